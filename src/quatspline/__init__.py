@@ -1,0 +1,54 @@
+"""quatspline: which scheme should interpolate my orientations, and what does it cost me?
+
+Keyframes go in, a scheme makes a curve of them, instruments measure the curve, and tables, figures
+and a page show what was measured.  Start with ``quatspline.build`` or ``quatspline.compare``.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from quatspline.curve import ConvergenceError, Curve, SolveReport
+    from quatspline.keyframes import Keyframes
+    from quatspline.registry import build, scheme, schemes
+    from quatspline.schemes.quartic import QuarticSpline
+
+__version__ = "0.1.0"
+
+_HOMES = {
+    "Curve": "quatspline.curve",
+    "SolveReport": "quatspline.curve",
+    "ConvergenceError": "quatspline.curve",
+    "Keyframes": "quatspline.keyframes",
+    "QuarticSpline": "quatspline.schemes.quartic",
+    "build": "quatspline.registry",
+    "scheme": "quatspline.registry",
+    "schemes": "quatspline.registry",
+}
+
+__all__ = [
+    "ConvergenceError",
+    "Curve",
+    "Keyframes",
+    "QuarticSpline",
+    "SolveReport",
+    "__version__",
+    "build",
+    "scheme",
+    "schemes",
+]
+
+
+def __getattr__(name: str) -> Any:
+    # Heavy imports (numba, scipy) wait until a name is used.
+    if name in _HOMES:
+        value = getattr(importlib.import_module(_HOMES[name]), name)
+        globals()[name] = value
+        return value
+    raise AttributeError(f"module 'quatspline' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,170 @@
+"""Compilation: how the kernels of this package are compiled, cached and called through addresses.
+
+Three kinds of compiled code share the settings of this module.
+
+``inlined``   scalar primitives, always inlined into their callers
+``compiled``  ordinary functions called from Python
+``Kernel``    functions reached through their address: one compiled driver serves every scheme, and
+              a scheme supplies only its mathematics.  Two signatures exist, `sample_kernel`
+              (evaluates a block of samples) and `fit_kernel` (turns keyframes into segments).
+
+numba's disk cache does not notice an edit to a function that a cached kernel calls in another
+file, so the cache folder is keyed by a hash of every source file that takes part.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import tempfile
+import threading
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numba
+from llvmlite import ir
+from numba.core import types
+from numba.extending import intrinsic
+
+BLOCK = 64
+"""Samples in a block: the sheet of one block stays within the first-level cache."""
+
+ROWS = 64
+"""Rows of a sheet: 0 holds u, 1 holds 1/h, 2... the segment's constants, the last four the result."""
+
+CONSTANTS = 2
+"""The first row of the segment's constants."""
+
+RESULT = ROWS - 4
+"""The first row of the result: w, x, y, z of a quaternion or x, y, z of a rate."""
+
+SETTINGS: dict[str, Any] = {
+    "error_model": "numpy",
+    # Contraction to fused multiply-adds keeps or improves accuracy; nothing here may reassociate.
+    "fastmath": {"contract", "nsz", "arcp"},
+}
+
+
+@cache
+def cache_folder() -> str:
+    """The folder of compiled code, named after the sources that it was compiled from."""
+    package = Path(__file__).parent
+    digest = hashlib.sha256(numba.__version__.encode())
+    for source in sorted(package.rglob("*.py")):
+        text = source.read_bytes()
+        if b"_jit" in text:
+            digest.update(text)
+    import platformdirs
+
+    base = os.environ.get("QUATSPLINE_CACHE") or platformdirs.user_cache_dir("quatspline")
+    folder = Path(base) / digest.hexdigest()[:16]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        folder = Path(tempfile.mkdtemp(prefix="quatspline-"))
+    return str(folder)
+
+
+def _cached(decorate: Callable[[], Any]) -> Any:
+    """Run a numba decorator with the cache in our folder, leaving numba's own setting alone."""
+    before = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = cache_folder()
+    try:
+        return decorate()
+    finally:
+        numba.config.CACHE_DIR = before
+
+
+def inlined(function: Callable[..., Any]) -> Any:
+    """Compile a scalar primitive that its callers always inline (so that loops vectorise)."""
+    return numba.njit(forceinline=True, **SETTINGS)(function)
+
+
+def compiled(function: Callable[..., Any]) -> Any:
+    """Compile a function called from Python: cached on disk, free of the interpreter lock."""
+    return _cached(lambda: numba.njit(cache=True, nogil=True, **SETTINGS)(function))
+
+
+_compiling = threading.Lock()
+
+
+class Kernel:
+    """A function compiled on first use and called from compiled code through its address."""
+
+    def __init__(self, function: Callable[..., Any], signature: Any) -> None:
+        self.python = function
+        self.signature = signature
+        self._compiled: Any = None
+
+    @property
+    def address(self) -> int:
+        """The address of the compiled function; compiles it, or loads it from the cache."""
+        if self._compiled is None:
+            with _compiling:
+                if self._compiled is None:
+                    self._compiled = _cached(
+                        lambda: numba.cfunc(self.signature, cache=True, **SETTINGS)(self.python)
+                    )
+        return int(self._compiled.address)
+
+
+_sheet = types.CPointer(types.float64)
+_vector = types.Array(types.float64, 1, "C")
+_matrix = types.Array(types.float64, 2, "C")
+
+SAMPLE_SIGNATURE = types.void(_sheet, types.intp)
+FIT_SIGNATURE = types.void(_matrix, _vector, types.boolean, types.float64, _vector, _matrix, _vector)
+
+
+def sample_kernel(function: Callable[..., Any]) -> Kernel:
+    """A kernel ``f(sheet, n)`` that evaluates the first n samples of a block.
+
+    ``sheet`` points to ROWS x BLOCK numbers, one row a quantity (``carray(sheet, (ROWS, BLOCK))``).
+    """
+    return Kernel(function, SAMPLE_SIGNATURE)
+
+
+def fit_kernel(function: Callable[..., Any]) -> Kernel:
+    """A kernel ``f(q, h, closed, sign, parameters, segments, report)`` that fits one track.
+
+    q (n, 4) keyframes, h (segments,) spacings, sign the closing sign, parameters (p,) the
+    scheme's options as numbers; fills segments (segments, constants) and report (4,), which
+    holds iterations, change, residual, and the largest half angle that a sample can meet.
+    """
+    return Kernel(function, FIT_SIGNATURE)
+
+
+@intrinsic
+def call_sample(typing: Any, address: Any, sheet: Any, count: Any) -> Any:
+    """Call a sample kernel by its address from compiled code."""
+    return types.void(types.intp, *SAMPLE_SIGNATURE.args), _through(SAMPLE_SIGNATURE)
+
+
+@intrinsic
+def call_fit(  # noqa: PLR0913 - the kernel's own arguments
+    typing: Any,
+    address: Any,
+    q: Any,
+    h: Any,
+    closed: Any,
+    sign: Any,
+    parameters: Any,
+    segments: Any,
+    report: Any,
+) -> Any:
+    """Call a fit kernel by its address from compiled code."""
+    return types.void(types.intp, *FIT_SIGNATURE.args), _through(FIT_SIGNATURE)
+
+
+def _through(signature: Any) -> Callable[..., Any]:
+    """Code generation of a call through an address with the given signature."""
+
+    def generate(context: Any, builder: Any, typed: Any, values: Any) -> Any:
+        kinds = [context.get_value_type(kind) for kind in signature.args]
+        pointer = ir.FunctionType(ir.VoidType(), kinds).as_pointer()
+        builder.call(builder.inttoptr(values[0], pointer), values[1:])
+        return context.get_dummy_value()
+
+    return generate

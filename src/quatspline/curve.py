@@ -1,0 +1,413 @@
+"""Curve: the one interface of all schemes, with its claims; SolveReport and ConvergenceError."""
+
+from __future__ import annotations
+
+import abc
+import operator
+import sys
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from quatspline import keyframes as kf
+from quatspline import numeric, options, quaternion
+from quatspline.quaternion import FloatArray
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation
+
+EDGE = 4
+"""Samples this many ulp outside an open domain count as its end."""
+
+WRONG_FIXED_POINT = 1000.0
+"""A stop by change with a residual over this many tolerances is not a solution."""
+
+
+@dataclass(frozen=True)
+class SolveReport:
+    """What an iterative solver did; fields have the shape of the tracks where there are several.
+
+    Attributes
+    ----------
+    method, stop : the iteration, and the rule that ended it ("residual" or "change")
+    iterations : updates made, the accepting one included
+    change : relative change of all control quaternions by the last update
+    residual : largest miss at a keyframe, a rotation angle in rad
+    converged : whether the stop rule was met at a right solution
+    tolerance : what was asked for
+    """
+
+    method: str
+    stop: str
+    iterations: Any
+    change: Any
+    residual: Any
+    converged: Any
+    tolerance: float
+
+
+class ConvergenceError(RuntimeError):
+    """A solve that did not converge; ``report`` is its `SolveReport`."""
+
+    def __init__(self, message: str, report: SolveReport) -> None:
+        super().__init__(message)
+        self.report = report
+
+    def __reduce__(self) -> Any:
+        return type(self), (self.args[0], self.report)
+
+
+class Curve(abc.ABC):
+    """A unit-quaternion curve through (or near) keyframes.
+
+    A scheme subclasses this in a file of its own: class attributes state its claims, `_fit`
+    prepares it, and `_orientation` evaluates it.  Input arrives validated, normalised and
+    aligned; several tracks, closed curves and the numerical rates are handled here.
+
+    Parameters
+    ----------
+    times : (n,) strictly increasing, closed (n + 1,): the last is where the first keyframe returns;
+        None means 0, 1, 2, ...
+    quaternions : (n, 4) scalar first, (n, *K, 4) for several tracks, or a scipy ``Rotation``
+    closed : whether the curve returns to its first keyframe
+    align : put neighbours on one hemisphere (the short way round); False keeps the signs as given
+    closing_sign : with closed and align=False, -1 closes an odd number of full turns
+    **options : the scheme's own
+
+    Raises
+    ------
+    ValueError
+        On bad input, naming the argument, the first offending index and the value.
+    ConvergenceError
+        When an iterative solver does not converge (unless ``on_failure="return"``).
+    """
+
+    name: ClassVar[str]
+    """The key: the file's stem with hyphens."""
+    title: ClassVar[str]
+    reference: ClassVar[str]
+    """A key of references.bib."""
+    interpolates: bool = True
+    continuity: int
+    """k of C^k on S^3."""
+    order: int
+    """Interior approximation order on smooth motion, uniform knots."""
+    support: int | None
+    """Keyframes that shape one segment; None means all."""
+    constant_rate: Literal["everywhere", "interior", "no"]
+    """Where keyframes of a constant spin give that spin."""
+    non_uniform: ClassVar[bool] = True
+    closable: ClassVar[bool] = True
+    iterative: ClassVar[bool] = False
+    peer: ClassVar[str | None] = None
+    """The third-party distribution that it wraps."""
+    min_keyframes: ClassVar[int] = 2
+    orders: ClassVar[tuple[int, ...]] = (0, 1, 2)
+    """Orders that a call offers; a peer may lack some."""
+    operations: ClassVar[dict[str, float]] = {}
+    """Counts that no machine changes: e.g. {"exps per sample": 3, "logs per keyframe": 1}."""
+    batched: ClassVar[bool] = False
+    """Whether `_fit` and the evaluation take all tracks at once."""
+
+    solve_report: SolveReport | None = None
+
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        super().__init_subclass__(**kwargs)
+        if "name" not in cls.__dict__:
+            file = getattr(sys.modules.get(cls.__module__), "__file__", None) or cls.__name__
+            cls.name = Path(file).stem.replace("_", "-")
+
+    def __init__(
+        self,
+        times: ArrayLike | None,
+        quaternions: ArrayLike | Rotation,
+        *,
+        closed: bool = False,
+        align: bool = True,
+        closing_sign: int | None = None,
+        **given: Any,
+    ) -> None:
+        keyframes = kf.prepare(
+            times,
+            quaternions,
+            closed=closed,
+            align=align,
+            closing_sign=closing_sign,
+            min_keyframes=self.min_keyframes,
+        )
+        self._build(keyframes, given)
+
+    @classmethod
+    def from_keyframes(cls, keyframes: kf.Keyframes, **given: Any) -> Self:
+        """The curve of prepared keyframes: what the constructor does after validation."""
+        curve = cls.__new__(cls)
+        curve._build(keyframes, given)
+        return curve
+
+    # -- what a scheme writes -------------------------------------------------------------------
+
+    @abc.abstractmethod
+    def _fit(self, keyframes: kf.Keyframes) -> None:
+        """Prepare the curve; keyword-only parameters are the scheme's options."""
+
+    @abc.abstractmethod
+    def _orientation(self, t: FloatArray) -> FloatArray:
+        """Unit quaternions (m, 4) at t (m,), times since the first keyframe, within the domain."""
+
+    def _velocity(self, t: FloatArray) -> FloatArray:
+        """Body angular velocity (m, 3) in rad per time; by default from `_orientation`."""
+        return numeric.rates(self._orientation, t, self._keyframes.knots)[0]
+
+    def _acceleration(self, t: FloatArray) -> FloatArray:
+        """Body angular acceleration (m, 3); by default from `_orientation`."""
+        return numeric.rates(self._orientation, t, self._keyframes.knots)[1]
+
+    # -- what a user reads ----------------------------------------------------------------------
+
+    @property
+    def times(self) -> FloatArray:
+        """Keyframe times as given: (n,) or, closed, (n + 1,)."""
+        return self._keyframes.times
+
+    @cached_property
+    def quaternions(self) -> FloatArray:
+        """Keyframes (n, *K, 4), normalised and aligned."""
+        return self._keyframes.shaped()
+
+    @property
+    def closed(self) -> bool:
+        """Whether the curve returns to its first keyframe."""
+        return self._keyframes.closed
+
+    @property
+    def domain(self) -> tuple[float, float]:
+        """First and last time."""
+        return float(self.times[0]), float(self.times[-1])
+
+    @property
+    def keyframes(self) -> kf.Keyframes:
+        """The prepared keyframes."""
+        return self._keyframes
+
+    @property
+    def numeric_orders(self) -> tuple[int, ...]:
+        """Orders whose values come from the shared numerical fallback."""
+        cls = type(self)
+        own = (True, cls._velocity is not Curve._velocity, cls._acceleration is not Curve._acceleration)
+        return tuple(k for k in self.orders if not own[k])
+
+    def __call__(
+        self,
+        t: ArrayLike,
+        order: int = 0,
+        *,
+        out: FloatArray | None = None,
+        frame: Literal["body", "world"] = "body",
+        threads: int = 1,
+    ) -> FloatArray:
+        """Evaluate at times t of any shape S.
+
+        Parameters
+        ----------
+        t : scalar or array S; an open curve refuses times outside its domain, a closed one wraps
+        order : 0 for unit quaternions S + (*K, 4); 1 for the angular velocity S + (*K, 3) in rad per
+            time; 2 for the angular acceleration
+        out : float64 of exactly that shape, any strides; is filled and returned
+        frame : of the rates, "body" (default) or "world"
+        threads : for large t
+
+        Raises
+        ------
+        ValueError
+            On NaN, times outside an open domain, an order that the scheme lacks, a wrong out.
+        """
+        samples = _samples(t)
+        order = self._checked_order(order)
+        if frame not in ("body", "world"):
+            raise ValueError(f"frame={frame!r}: expected 'body' or 'world'")
+        shape = (*samples.shape, *self._keyframes.track_shape, 3 if order else 4)
+        result = np.empty(shape) if out is None else _checked_out(out, shape)
+        flat = _flat(result, samples.size, self._keyframes.tracks.shape[0])
+        self._evaluate(samples, order, flat, _checked_threads(threads))
+        if not np.shares_memory(flat, result):
+            result[...] = flat.reshape(shape)
+        if order and frame == "world":
+            result[...] = quaternion.rotate(self(t, threads=threads), result)
+        return result
+
+    def log(self, t: ArrayLike) -> FloatArray:
+        """The log-curve ln q(t), S + (*K, 3): the principal logarithm of the curve's own sign.
+
+        Where the curve runs straight through -1 (a spin about one axis through the identity) it goes
+        on past pi, anchored at ``domain[0]``.
+        """
+        from quatspline.logcurve import log_curve
+
+        return log_curve(self, t)
+
+    def rotation(self, t: ArrayLike) -> Rotation:
+        """The orientations at t as a scipy ``Rotation``."""
+        from scipy.spatial.transform import Rotation
+
+        return Rotation.from_quat(self(t), scalar_first=True)
+
+    def __repr__(self) -> str:
+        n, (lo, hi) = self._keyframes.count, self.domain
+        kind = "closed" if self.closed else "open"
+        tracks = f", tracks {self._keyframes.track_shape}" if self._keyframes.track_shape else ""
+        return f"<{type(self).__name__} {self.name!r}: {n} keyframes, {kind}, [{lo:g}, {hi:g}]{tracks}>"
+
+    def __reduce__(self) -> Any:
+        # Schemes loaded by path have no importable module: send the name (design, trap 12).
+        return _rebuild, (self.name, self._keyframes, self._options)
+
+    # -- how it works ---------------------------------------------------------------------------
+
+    def _build(self, keyframes: kf.Keyframes, given: dict[str, Any]) -> None:
+        if keyframes.count < self.min_keyframes:
+            raise ValueError(
+                f"quaternions has {keyframes.count} keyframes: {self.name} needs {self.min_keyframes}"
+            )
+        if keyframes.closed and not self.closable:
+            raise ValueError(f"closed=True: {self.name} has no closed curve")
+        if not self.non_uniform and not keyframes.uniform:
+            i = int(np.argmax(np.abs(keyframes.spacings - keyframes.spacings[0])))
+            raise ValueError(
+                f"times[{i}] to times[{i + 1}] is {keyframes.spacings[i]:g}, not "
+                f"{keyframes.spacings[0]:g}: {self.name} takes uniform times only"
+            )
+        self._options = options.checked(self.name, type(self)._fit, given)
+        self._keyframes = keyframes
+        if self.batched or keyframes.tracks.shape[0] == 1:
+            self._parts: tuple[Curve, ...] = (self,)
+            self._fit(keyframes, **self._options)
+        else:
+            self._parts = tuple(
+                type(self).from_keyframes(keyframes.track(k), **self._options)
+                for k in range(keyframes.tracks.shape[0])
+            )
+            self.solve_report = _joined([p.solve_report for p in self._parts], keyframes.track_shape)
+
+    def _evaluate(self, samples: FloatArray, order: int, out: FloatArray, threads: int) -> None:
+        """Fill out (m, K, 4 or 3) at the samples."""
+        t, flips = self._wrapped(samples)
+        for k, part in enumerate(self._parts):
+            evaluate = (part._orientation, part._velocity, part._acceleration)[order]
+            out[:, k] = evaluate(t)
+            if order == 0 and self._keyframes.signs[k] < 0.0:
+                out[flips, k] *= -1.0
+
+    def _wrapped(self, samples: FloatArray) -> tuple[FloatArray, Any]:
+        """Times since the first keyframe within the domain (m,), and where an odd number of
+        periods was taken off."""
+        first, last = self.domain
+        period = last - first
+        t = samples.reshape(-1) - first
+        if self.closed:
+            bad = ~np.isfinite(t)
+            periods = np.floor(np.where(bad, 0.0, t) / period)
+            t = np.clip(t - periods * period, 0.0, period)
+            flips = periods % 2 == 1
+        else:
+            bad = ~((t >= -self._slack) & (t <= period + self._slack))
+            t = np.clip(t, 0.0, period)
+            flips = np.zeros(t.shape, bool)
+        if bad.any():
+            self._refuse(samples, int(np.argmax(bad)))
+        return t, flips
+
+    @cached_property
+    def _slack(self) -> float:
+        return EDGE * float(np.spacing(np.abs(self._keyframes.times[[0, -1]]).max()))
+
+    def _refuse(self, samples: FloatArray, index: int) -> None:
+        where = [int(i) for i in np.unravel_index(index, samples.shape)]
+        label = f"t{where}" if where else "t"
+        value = float(samples.reshape(-1)[index])
+        if not np.isfinite(value):
+            raise ValueError(f"{label} = {value}: not a finite number")
+        first, last = self.domain
+        raise ValueError(f"{label} = {value!r}: outside the domain [{first!r}, {last!r}]")
+
+    def _checked_order(self, order: Any) -> int:
+        try:
+            order = operator.index(order)
+        except TypeError:
+            raise ValueError(f"order={order!r}: expected 0, 1 or 2") from None
+        if order not in (0, 1, 2):
+            raise ValueError(f"order={order}: expected 0, 1 or 2")
+        if order not in self.orders:
+            raise ValueError(f"order={order}: {self.name} offers orders {self.orders} only")
+        return order
+
+    def _conclude(self, report: SolveReport, on_failure: str = "raise") -> None:
+        """Keep the report of a solve; raise ConvergenceError where it failed and was not excused."""
+        self.solve_report = report
+        if on_failure == "raise" and not np.all(report.converged):
+            k = int(np.argmin(np.reshape(report.converged, -1)))
+            track = f" on track {k}" if self._keyframes.track_shape else ""
+            picked = [np.reshape(x, -1)[k] for x in (report.iterations, report.change, report.residual)]
+            raise ConvergenceError(
+                f"{self.name} ({report.method}) did not converge{track}: after {picked[0]} iterations "
+                f"change {picked[1]:.3g}, residual {picked[2]:.3g} rad, tolerance {report.tolerance:g}",
+                report,
+            )
+
+
+def _rebuild(name: str, keyframes: kf.Keyframes, given: dict[str, Any]) -> Curve:
+    from quatspline.registry import scheme
+
+    return scheme(name).from_keyframes(keyframes, **given)
+
+
+def _samples(t: ArrayLike) -> FloatArray:
+    if type(t) is float:
+        return np.array(t)
+    try:
+        samples = np.asarray(t)
+    except ValueError:
+        raise ValueError("t: rows of unequal length, or not numbers") from None
+    if samples.dtype.kind not in "iuf":
+        raise ValueError(f"t: expected real numbers, got dtype {samples.dtype}")
+    return samples.astype(float, copy=False)
+
+
+def _checked_out(out: Any, shape: tuple[int, ...]) -> FloatArray:
+    if not isinstance(out, np.ndarray) or out.dtype != np.float64 or out.shape != shape:
+        found = f"{out.dtype} {out.shape}" if isinstance(out, np.ndarray) else type(out).__name__
+        raise ValueError(f"out: expected a float64 array of shape {shape}, got {found}")
+    if not out.flags.writeable:
+        raise ValueError("out: the array is read-only")
+    return out
+
+
+def _checked_threads(threads: Any) -> int:
+    try:
+        count = operator.index(threads)
+    except TypeError:
+        raise ValueError(f"threads={threads!r}: expected a whole number, at least 1") from None
+    if count < 1:
+        raise ValueError(f"threads={count}: expected at least 1")
+    return count
+
+
+def _flat(result: FloatArray, samples: int, tracks: int) -> FloatArray:
+    """The result as (m, K, width): a view where strides allow, otherwise a buffer of that shape."""
+    return result.reshape(samples, tracks, result.shape[-1])
+
+
+def _joined(reports: list[SolveReport | None], shape: tuple[int, ...]) -> SolveReport | None:
+    """One report whose fields have the shape of the tracks."""
+    if not reports or any(r is None for r in reports):
+        return None
+    first = reports[0]
+    assert first is not None
+    columns = {
+        field: np.array([getattr(r, field) for r in reports]).reshape(shape)
+        for field in ("iterations", "change", "residual", "converged")
+    }
+    return SolveReport(first.method, first.stop, tolerance=first.tolerance, **columns)

@@ -1,0 +1,206 @@
+"""Keyframes: the one place where input is validated, normalised, aligned and closed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from quatspline.quaternion import ANTIPODAL, FloatArray
+from quatspline.quaternion import align as one_hemisphere
+
+NORM_TOLERANCE = 1e-3
+"""Quaternions off the unit sphere by more than this are refused; within it they are normalised."""
+
+UNIFORM = 1e-9
+"""Spacings equal to this relative accuracy (and to the rounding of the times) count as uniform."""
+
+
+@dataclass(frozen=True, eq=False)
+class Keyframes:
+    """Validated keyframes of one or several tracks, as schemes receive them.
+
+    Attributes
+    ----------
+    times : (n,) or, closed, (n + 1,) float64, as given; the last of a closed set is the return
+    tracks : (K, n, 4) float64, unit quaternions, neighbours on one hemisphere unless kept as given
+    track_shape : the shape whose product is K; () for a single track
+    closed : whether the last keyframe leads back to the first
+    signs : (K,) float64, +1 or -1: the curve returns as sign times the first keyframe
+    """
+
+    times: FloatArray
+    tracks: FloatArray
+    track_shape: tuple[int, ...]
+    closed: bool
+    signs: FloatArray
+
+    @cached_property
+    def knots(self) -> FloatArray:
+        """Times since the first, (n,) or (n + 1,): all work is done in these."""
+        return self.times - self.times[0]
+
+    @cached_property
+    def spacings(self) -> FloatArray:
+        """Knot spacings h, one a segment: (n - 1,) or, closed, (n,)."""
+        return np.diff(self.knots)
+
+    @property
+    def quaternions(self) -> FloatArray:
+        """The keyframes (n, 4) of a single track (`track` picks one of several)."""
+        if self.tracks.shape[0] != 1:
+            raise ValueError(f"{self.tracks.shape[0]} tracks: pick one with track(k)")
+        return self.tracks[0]
+
+    @property
+    def count(self) -> int:
+        """The number of keyframes n."""
+        return self.tracks.shape[1]
+
+    @property
+    def sign(self) -> float:
+        """The closing sign of a single track."""
+        return float(self.signs[0])
+
+    @property
+    def uniform(self) -> bool:
+        """Whether all spacings are equal, up to the rounding of the given times."""
+        h = self.spacings
+        rounding = 8 * np.spacing(np.abs(self.times[[0, -1]]).max())
+        return bool(h.max() - h.min() <= UNIFORM * h.min() + rounding)
+
+    def track(self, k: int) -> Keyframes:
+        """The keyframes of one track."""
+        return Keyframes(self.times, self.tracks[k : k + 1], (), self.closed, self.signs[k : k + 1])
+
+    def shaped(self) -> FloatArray:
+        """The keyframes in the caller's shape (n, *track_shape, 4)."""
+        return np.moveaxis(self.tracks, 0, 1).reshape(-1, *self.track_shape, 4)
+
+
+def prepare(
+    times: ArrayLike | None,
+    quaternions: Any,
+    *,
+    closed: bool = False,
+    align: bool = True,
+    closing_sign: int | None = None,
+    min_keyframes: int = 2,
+) -> Keyframes:
+    """Validate, normalise and align keyframes.
+
+    Parameters
+    ----------
+    times
+        (n,) strictly increasing, or (n + 1,) closed: the last is where the first keyframe returns.
+        None means 0, 1, 2, ...
+    quaternions
+        (n, 4) scalar first, (n, *K, 4) for several tracks, or a scipy ``Rotation``.
+    closed, align, closing_sign
+        As in `quatspline.build`.
+    min_keyframes
+        Fewer than these are refused.
+
+    Raises
+    ------
+    ValueError
+        Names the argument, the first offending index and the value.
+    """
+    q = _quaternions(quaternions, min_keyframes)
+    n = q.shape[0]
+    t = np.arange(n + closed, dtype=float) if times is None else _times(times, n, closed)
+    if closing_sign is not None and (align or not closed or closing_sign not in (1, -1)):
+        raise ValueError(
+            f"closing_sign={closing_sign!r}: give 1 or -1, and only with closed=True, align=False"
+        )
+    if align:
+        q = one_hemisphere(q)
+    track_shape = q.shape[1:-1]
+    tracks = np.ascontiguousarray(np.moveaxis(q.reshape(n, -1, 4), 1, 0))
+    signs = np.full(tracks.shape[0], float(closing_sign or 1))
+    if align and closed:
+        signs = np.where(np.einsum("ki,ki->k", tracks[:, -1], tracks[:, 0]) < 0.0, -1.0, 1.0)
+    keyframes = Keyframes(t, tracks, track_shape, bool(closed), signs)
+    if not align:
+        _refuse_antipodes(keyframes)
+    for array in (t, tracks, signs):
+        array.setflags(write=False)
+    return keyframes
+
+
+def _numbers(name: str, given: Any) -> FloatArray:
+    """A float64 copy of real numbers, or a sentence that says why not."""
+    try:
+        array = np.asarray(given)
+    except ValueError:
+        raise ValueError(f"{name}: rows of unequal length, or not numbers") from None
+    if array.dtype.kind not in "iuf":
+        kind = "complex" if array.dtype.kind == "c" else "not real numbers"
+        raise ValueError(f"{name}: {kind} (dtype {array.dtype})")
+    array = np.array(array, dtype=float)
+    if not np.isfinite(array).all():
+        first = np.argwhere(~np.isfinite(array))[0]
+        raise ValueError(f"{_at(name, first)} = {array[tuple(first)]}: not a finite number")
+    return array
+
+
+def _at(name: str, index: Any) -> str:
+    return f"{name}[{', '.join(str(int(i)) for i in np.atleast_1d(index))}]"
+
+
+def _quaternions(given: Any, least: int) -> FloatArray:
+    if hasattr(given, "as_quat"):
+        given = given.as_quat(scalar_first=True)
+    q = _numbers("quaternions", given)
+    if q.ndim < 2 or q.shape[-1] != 4:
+        raise ValueError(f"quaternions has shape {q.shape}: expected (n, 4) or (n, ..., 4)")
+    if q.shape[0] < least:
+        raise ValueError(f"quaternions has {q.shape[0]} keyframes: at least {least} are needed")
+    if q.size == 0:
+        raise ValueError(f"quaternions has shape {q.shape}: no track in it")
+    with np.errstate(over="ignore"):
+        norms = np.linalg.norm(q, axis=-1)
+    off = np.argwhere(np.abs(norms - 1.0) > NORM_TOLERANCE)
+    if off.size:
+        first = tuple(off[0])
+        raise ValueError(
+            f"{_at('quaternions', off[0])} = {q[first].tolist()} has norm {norms[first]:.6g}: "
+            f"not a unit quaternion (off by more than {NORM_TOLERANCE:g})"
+        )
+    return q / norms[..., None]
+
+
+def _times(given: Any, n: int, closed: bool) -> FloatArray:
+    t = _numbers("times", given)
+    if t.shape != (n + closed,):
+        wanted = f"({n + closed},)" + (" (one more than keyframes: the return)" if closed else "")
+        raise ValueError(f"times has shape {t.shape}: expected {wanted} for {n} keyframes")
+    steps = np.diff(t)
+    stuck = np.flatnonzero(~(steps > 0.0))
+    if stuck.size:
+        i = int(stuck[0])
+        raise ValueError(
+            f"times[{i + 1}] = {float(t[i + 1])!r} does not exceed times[{i}] = {float(t[i])!r}: "
+            "times must strictly increase"
+        )
+    if not np.isfinite(t[-1] - t[0]):
+        raise ValueError(f"times span {t[0]!r} to {t[-1]!r}: too long for float64")
+    return t
+
+
+def _refuse_antipodes(keyframes: Keyframes) -> None:
+    q = keyframes.tracks
+    if keyframes.closed:
+        q = np.concatenate([q, keyframes.signs[:, None, None] * q[:, :1]], axis=1)
+    gaps = np.linalg.norm(q[:, 1:] + q[:, :-1], axis=-1)
+    antipodal = np.argwhere(gaps.T < ANTIPODAL)
+    if antipodal.size:
+        i = int(antipodal[0][0])
+        n = keyframes.count
+        raise ValueError(
+            f"quaternions[{i}] and quaternions[{(i + 1) % n}] are exact antipodes: "
+            "with align=False no single arc joins q and -q"
+        )

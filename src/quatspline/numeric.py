@@ -1,0 +1,56 @@
+"""Rates of any curve from its orientations alone: the shared numerical fallback.
+
+Nine orientations around t, all inside t's own segment (one-sided near a knot), are taken to the
+tangent space at t: x_j = log(q(t)^-1 q(t + c_j h)).  There omega = 2 x' and alpha = 2 x'' exactly
+(the chart's Christoffel terms vanish at its centre), and a stencil gives both derivatives.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+
+from quatspline import quaternion
+from quatspline.quaternion import FloatArray
+
+POINTS = 9
+STEP = 6e-3
+"""Stencil step as a share of the segment: truncation (h^7 one-sided) and the rounding of second
+differences (1e-16/h^2) both stay near 1e-10 of the segment's own scale."""
+
+
+@cache
+def _stencils() -> tuple[FloatArray, FloatArray]:
+    """Weights (shift, node) of the first and the second derivative at 0 for shifted nodes."""
+    first, second = [], []
+    for shift in range(-(POINTS // 2), POINTS // 2 + 1):
+        nodes = np.arange(POINTS) - POINTS // 2 + shift
+        vandermonde = np.vander(nodes.astype(float), increasing=True).T
+        inverse = np.linalg.inv(vandermonde)
+        first.append(inverse[:, 1])
+        second.append(2.0 * inverse[:, 2])
+    return np.array(first), np.array(second)
+
+
+def rates(
+    orientation: Callable[[FloatArray], FloatArray], t: FloatArray, knots: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Body angular velocity and acceleration (m, 3) at t (m,) of a curve smooth between knots."""
+    segment = np.clip(np.searchsorted(knots, t, side="right") - 1, 0, len(knots) - 2)
+    lo, hi = knots[segment], knots[segment + 1]
+    step = STEP * (hi - lo)
+    reach = POINTS // 2
+    below = np.maximum(reach - np.floor((t - lo) / step), 0.0)
+    above = np.maximum(reach - np.floor((hi - t) / step), 0.0)
+    shift = np.clip(below - above, -reach, reach).astype(int)
+    nodes = np.arange(POINTS) - reach + shift[:, None]
+    samples = np.clip(t[:, None] + nodes * step[:, None], lo[:, None], hi[:, None])
+    q = orientation(samples.reshape(-1)).reshape(len(t), POINTS, 4)
+    centre = q[np.arange(len(t)), reach - shift]
+    x = quaternion.log(quaternion.mul(quaternion.conj(centre)[:, None], q))
+    first, second = _stencils()
+    velocity = 2.0 * np.einsum("mj,mji->mi", first[shift + reach], x) / step[:, None]
+    acceleration = 2.0 * np.einsum("mj,mji->mi", second[shift + reach], x) / step[:, None] ** 2
+    return velocity, acceleration

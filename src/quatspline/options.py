@@ -1,0 +1,118 @@
+"""Options of a scheme: the keyword-only parameters of its `_fit`, checked against annotations."""
+
+from __future__ import annotations
+
+import difflib
+import inspect
+import math
+import numbers
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from quatspline.quaternion import FloatArray
+
+
+@dataclass(frozen=True)
+class Above:
+    """Marks a number that must exceed a bound."""
+
+    bound: float
+
+    def accepts(self, value: float) -> bool:
+        return value > self.bound
+
+    def __str__(self) -> str:
+        return f"above {self.bound:g}"
+
+
+@dataclass(frozen=True)
+class AtLeast:
+    """Marks a number that must reach a bound."""
+
+    bound: float
+
+    def accepts(self, value: float) -> bool:
+        return value >= self.bound
+
+    def __str__(self) -> str:
+        return f"at least {self.bound:g}"
+
+
+Positive = Annotated[float, Above(0.0)]
+Count = Annotated[int, AtLeast(1)]
+Stop = Literal["residual", "change"]
+OnFailure = Literal["raise", "return"]
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """'name' is unknown: the end of a sentence that offers the nearest known names."""
+    known = sorted(known)
+    close = difflib.get_close_matches(str(name), known, n=1, cutoff=0.5)
+    return f"did you mean {close[0]!r}?" if close else f"known: {', '.join(known) or 'none'}"
+
+
+@cache
+def declared(fit: Callable[..., Any]) -> dict[str, inspect.Parameter]:
+    """The options that a `_fit` declares, with their annotations resolved."""
+    hints = get_type_hints(fit, include_extras=True)
+    return {
+        p.name: p.replace(annotation=hints.get(p.name, Any))
+        for p in inspect.signature(fit).parameters.values()
+        if p.kind is p.KEYWORD_ONLY
+    }
+
+
+def checked(scheme: str, fit: Callable[..., Any], given: Mapping[str, Any]) -> dict[str, Any]:
+    """The given options, refused with a ValueError where a name or a value is not declared."""
+    known = declared(fit)
+    for name, value in given.items():
+        if name not in known:
+            raise ValueError(f"{scheme} has no option {name!r}: {nearest(name, known)}")
+        _check(name, value, known[name].annotation)
+    return dict(given)
+
+
+def _check(name: str, value: Any, kind: Any) -> None:
+    origin = get_origin(kind)
+    if origin is Literal:
+        if value not in get_args(kind):
+            choices = ", ".join(repr(choice) for choice in get_args(kind))
+            raise ValueError(f"{name}={value!r}: expected one of {choices}")
+    elif origin is Annotated:
+        base, *bounds = get_args(kind)
+        _check(name, value, base)
+        for bound in bounds:
+            if not bound.accepts(value):
+                raise ValueError(f"{name}={value!r}: must be {bound}")
+    elif origin is Union or origin is getattr(__import__("types"), "UnionType", None):
+        if value is None and type(None) in get_args(kind):
+            return
+        for base in get_args(kind):
+            if base is not type(None):
+                _check(name, value, base)
+    elif kind is int:
+        if isinstance(value, bool) or not isinstance(value, numbers.Integral):
+            raise ValueError(f"{name}={value!r}: expected an integer")
+    elif kind is float and not (_is_number(value) and math.isfinite(value)):
+        raise ValueError(f"{name}={value!r}: expected a finite number")
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, numbers.Real) and not isinstance(value, bool)
+
+
+def per_keyframe(name: str, value: ArrayLike, count: int) -> FloatArray:
+    """A scalar for every keyframe, or one number a keyframe -> (count,) float64."""
+    array = np.asarray(value)
+    if array.dtype.kind not in "iuf" or array.shape not in ((), (count,)):
+        raise ValueError(f"{name} has shape {array.shape}: expected a number or {count} of them")
+    array = np.array(np.broadcast_to(array, (count,)), dtype=float)
+    if not np.isfinite(array).all():
+        i = int(np.flatnonzero(~np.isfinite(array))[0])
+        raise ValueError(f"{name}[{i}] = {array[i]}: not a finite number")
+    return array

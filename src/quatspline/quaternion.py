@@ -1,0 +1,259 @@
+"""Unit-quaternion algebra on arrays that end in an axis of 4, scalar first (w, x, y, z).
+
+All functions broadcast their leading axes and return float64.  Logarithms are half rotation
+vectors: ``log(q) = theta n`` for ``q = cos theta + n sin theta`` with 0 <= theta <= pi.  Angles come
+from atan2, never from acos, so that small rotations keep their relative accuracy (docs/mathematics/notation.md).  Other forms of rotations are scipy's business:
+``scipy.spatial.transform.Rotation.from_quat(q, scalar_first=True)``.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from quatspline import primitives as p
+from quatspline._jit import compiled
+
+FloatArray = NDArray[np.float64]
+
+ANTIPODAL = 4 * np.finfo(float).eps
+"""Quaternions whose sum is shorter than this have no shortest arc between them."""
+
+
+def mul(a: ArrayLike, b: ArrayLike) -> FloatArray:
+    """Hamilton product ab of (..., 4) and (..., 4)."""
+    return _apply(_mul, (a, 4), (b, 4), width=4)
+
+
+def conj(q: ArrayLike) -> FloatArray:
+    """Conjugate (w, -v) of (..., 4): the inverse of a unit quaternion."""
+    return np.asarray(q, dtype=float) * (1.0, -1.0, -1.0, -1.0)
+
+
+def exp(v: ArrayLike) -> FloatArray:
+    """exp(v) = (cos |v|, v sin |v|/|v|) of half rotation vectors (..., 3) -> (..., 4)."""
+    return _apply(_exp, (v, 3), width=4)
+
+
+def log(q: ArrayLike) -> FloatArray:
+    """Principal logarithm (..., 4) -> (..., 3), |log| <= pi; log(-1) is (pi, 0, 0) by convention."""
+    return _apply(_log, (q, 4), width=3)
+
+
+def power(q: ArrayLike, t: ArrayLike) -> FloatArray:
+    """q^t = exp(t log q) of (..., 4) with exponents broadcast against the leading axes."""
+    return exp(log(q) * np.asarray(t, dtype=float)[..., None])
+
+
+def slerp(a: ArrayLike, b: ArrayLike, t: ArrayLike) -> FloatArray:
+    """Spherical linear interpolation a (a^-1 b)^t along the great arc from a to b, any real t.
+
+    No sign is flipped: give neighbours on one hemisphere (`align`) for the short way round.
+
+    Raises
+    ------
+    ValueError
+        Where a = -b, which no single arc joins.
+    """
+    _refuse_antipodes(a, b)
+    return mul(a, power(mul(conj(a), b), t))
+
+
+def nlerp(a: ArrayLike, b: ArrayLike, t: ArrayLike) -> FloatArray:
+    """Normalised linear interpolation of a and b (..., 4): the arc of `slerp`, at uneven speed.
+
+    Raises
+    ------
+    ValueError
+        Where a = -b.
+    """
+    _refuse_antipodes(a, b)
+    u = np.asarray(t, dtype=float)[..., None]
+    q = (1.0 - u) * np.asarray(a, dtype=float) + u * np.asarray(b, dtype=float)
+    return normalise(q)
+
+
+def normalise(q: ArrayLike) -> FloatArray:
+    """q / |q| of (..., 4)."""
+    q = np.asarray(q, dtype=float)
+    return q / np.sqrt(np.einsum("...i,...i->...", q, q))[..., None]
+
+
+def align(q: ArrayLike) -> FloatArray:
+    """Signs flipped along axis 0 of (n, ..., 4) so that neighbours share a hemisphere.
+
+    The first keeps its sign; orthogonal neighbours (dot product 0) stay as given.
+    """
+    q = np.asarray(q, dtype=float)
+    dots = np.einsum("n...i,n...i->n...", q[1:], q[:-1])
+    signs = np.cumprod(np.where(dots < 0.0, -1.0, 1.0), axis=0)
+    return np.concatenate([q[:1], q[1:] * signs[..., None]])
+
+
+def distance(a: ArrayLike, b: ArrayLike) -> FloatArray:
+    """Angle in rad, 0 to pi, of the rotation between the orientations a and b (q and -q are one)."""
+    return _apply(_distance, (a, 4), (b, 4), width=0)
+
+
+def rotate(q: ArrayLike, v: ArrayLike) -> FloatArray:
+    """The vectors v (..., 3) turned by the unit quaternions q (..., 4): q v q^-1."""
+    return _apply(_rotate, (q, 4), (v, 3), width=3)
+
+
+def between(u: ArrayLike, v: ArrayLike) -> FloatArray:
+    """The least rotation (..., 4) that turns direction u (..., 3) into direction v (..., 3).
+
+    Stable for nearly parallel directions.  Opposite directions turn half a turn about an axis
+    orthogonal to u: the cross product with the coordinate axis that is farthest from u.
+
+    Raises
+    ------
+    ValueError
+        Where a direction has no length.
+    """
+    directions = []
+    for name, given in (("u", u), ("v", v)):
+        vector = np.asarray(given, dtype=float)
+        length = np.linalg.norm(vector, axis=-1, keepdims=True)
+        if not np.all(length > 0.0):
+            raise ValueError(f"{name} has a direction of length zero")
+        directions.append(vector / length)
+    return _apply(_between, (directions[0], 3), (directions[1], 3), width=4)
+
+
+def right_jacobian(r: ArrayLike) -> FloatArray:
+    """Right Jacobian Jr (..., 3, 3) of SO(3) at rotation vectors r (..., 3), full angles in rad.
+
+    exp(r + dr) = exp(r) exp(Jr(r) dr) to first order.
+    """
+    return _columns(_right_jacobian, r)
+
+
+def right_jacobian_inverse(r: ArrayLike) -> FloatArray:
+    """Inverse of `right_jacobian`; (..., 3) -> (..., 3, 3).
+
+    Raises
+    ------
+    ValueError
+        At full turns, |r| = 2 pi k with k >= 1, where Jr is singular.
+    """
+    angle = np.linalg.norm(np.asarray(r, dtype=float), axis=-1)
+    turns = np.rint(angle / (2 * math.pi))
+    if np.any((turns > 0) & (np.abs(angle - 2 * math.pi * turns) <= 4 * np.spacing(angle))):
+        raise ValueError("the right Jacobian is singular at a full turn, |r| = 2 pi k")
+    return _columns(_inverse_right_jacobian, r)
+
+
+def _refuse_antipodes(a: ArrayLike, b: ArrayLike) -> None:
+    total = np.asarray(a, dtype=float) + np.asarray(b, dtype=float)
+    antipodal = np.linalg.norm(total, axis=-1) < ANTIPODAL
+    if np.any(antipodal):
+        first = tuple(int(i) for i in np.argwhere(antipodal)[0])
+        raise ValueError(f"a and b are antipodes{list(first) or ''}: no single arc joins q and -q")
+
+
+def _apply(loop: Any, *arguments: tuple[ArrayLike, int], width: int) -> FloatArray:
+    """Broadcast the leading axes of (array, width) arguments and run a loop over rows."""
+    arrays = []
+    for given, size in arguments:
+        array = np.asarray(given, dtype=float)
+        if array.ndim == 0 or array.shape[-1] != size:
+            raise ValueError(f"expected an array that ends in an axis of {size}, got {array.shape}")
+        arrays.append(array)
+    lead = np.broadcast_shapes(*(array.shape[:-1] for array in arrays))
+    rows = [
+        np.ascontiguousarray(np.broadcast_to(a, (*lead, a.shape[-1])).reshape(-1, a.shape[-1]))
+        for a in arrays
+    ]
+    out = np.empty((rows[0].shape[0], max(width, 1)))
+    loop(*rows, out)
+    return out.reshape((*lead, width) if width else lead)
+
+
+def _columns(loop: Any, r: ArrayLike) -> FloatArray:
+    """A 3x3 matrix from a loop that multiplies it to a vector: one call for all unit vectors."""
+    r = np.asarray(r, dtype=float)
+    columns = _apply(loop, (r[..., None, :], 3), (np.eye(3), 3), width=3)
+    return np.swapaxes(columns, -1, -2)
+
+
+@compiled
+def _mul(a, b, out):
+    for i in range(out.shape[0]):
+        out[i, 0], out[i, 1], out[i, 2], out[i, 3] = p.mul(
+            a[i, 0], a[i, 1], a[i, 2], a[i, 3], b[i, 0], b[i, 1], b[i, 2], b[i, 3]
+        )
+
+
+@compiled
+def _exp(v, out):
+    for i in range(out.shape[0]):
+        out[i, 0], out[i, 1], out[i, 2], out[i, 3] = p.exp(v[i, 0], v[i, 1], v[i, 2])
+
+
+@compiled
+def _log(q, out):
+    for i in range(out.shape[0]):
+        out[i, 0], out[i, 1], out[i, 2] = p.log(q[i, 0], q[i, 1], q[i, 2], q[i, 3])
+
+
+@compiled
+def _distance(a, b, out):
+    for i in range(out.shape[0]):
+        w, x, y, z = p.between(
+            a[i, 0], a[i, 1], a[i, 2], a[i, 3], b[i, 0], b[i, 1], b[i, 2], b[i, 3]
+        )
+        out[i, 0] = 2.0 * math.atan2(math.sqrt(x * x + y * y + z * z), abs(w))
+
+
+@compiled
+def _rotate(q, v, out):
+    for i in range(out.shape[0]):
+        out[i, 0], out[i, 1], out[i, 2] = p.rotate(
+            q[i, 0], q[i, 1], q[i, 2], q[i, 3], v[i, 0], v[i, 1], v[i, 2]
+        )
+
+
+@compiled
+def _between(u, v, out):
+    for i in range(out.shape[0]):
+        x, y, z = u[i, 0], u[i, 1], u[i, 2]
+        # half-angle form: |u + v| = 2 cos(angle/2), |u - v| = 2 sin(angle/2)
+        sx, sy, sz = x + v[i, 0], y + v[i, 1], z + v[i, 2]
+        dx, dy, dz = v[i, 0] - x, v[i, 1] - y, v[i, 2] - z
+        c = 0.5 * math.sqrt(sx * sx + sy * sy + sz * sz)
+        s = 0.5 * math.sqrt(dx * dx + dy * dy + dz * dz)
+        ax, ay, az = p.cross(sx, sy, sz, dx, dy, dz)
+        length = math.sqrt(ax * ax + ay * ay + az * az)
+        if length < p.TINY:
+            if s < 0.5:
+                out[i, 0], out[i, 1], out[i, 2], out[i, 3] = 1.0, 0.0, 0.0, 0.0
+                continue
+            least = min(abs(x), abs(y), abs(z))
+            e = (1.0, 0.0, 0.0)
+            if abs(x) > least:
+                e = (0.0, 1.0, 0.0) if abs(y) == least else (0.0, 0.0, 1.0)
+            ax, ay, az = p.cross(x, y, z, e[0], e[1], e[2])
+            length = math.sqrt(ax * ax + ay * ay + az * az)
+        norm = math.sqrt(c * c + s * s)
+        k = s / (norm * length)
+        out[i, 0], out[i, 1], out[i, 2], out[i, 3] = c / norm, k * ax, k * ay, k * az
+
+
+@compiled
+def _right_jacobian(r, v, out):
+    for i in range(out.shape[0]):
+        out[i, 0], out[i, 1], out[i, 2] = p.right_jacobian(
+            r[i, 0], r[i, 1], r[i, 2], v[i, 0], v[i, 1], v[i, 2]
+        )
+
+
+@compiled
+def _inverse_right_jacobian(r, v, out):
+    for i in range(out.shape[0]):
+        out[i, 0], out[i, 1], out[i, 2] = p.inverse_right_jacobian(
+            r[i, 0], r[i, 1], r[i, 2], v[i, 0], v[i, 1], v[i, 2]
+        )

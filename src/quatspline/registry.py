@@ -1,0 +1,177 @@
+"""Finds schemes: one file, one scheme, the key being the file's stem with hyphens.
+
+Looked through, in order: the package's own ``schemes``, ``baselines`` (beside ``src`` in a checkout,
+inside the package when installed), the folders named by ``QUATSPLINE_BASELINES`` (a path list), and the
+entry points of the group ``quatspline.schemes``.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.metadata
+import importlib.util
+import os
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+from quatspline.curve import Curve
+from quatspline.options import nearest
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+PACKAGE = Path(__file__).parent
+ENTRY_POINTS = "quatspline.schemes"
+FOLDERS = "QUATSPLINE_BASELINES"
+
+
+@dataclass(frozen=True)
+class Found:
+    """A scheme's class, or the reason why it cannot be used."""
+
+    name: str
+    origin: str
+    scheme: type[Curve] | None
+    problem: str | None = None
+
+
+def shipped(folder: str) -> Path:
+    """A folder that a checkout keeps beside ``src`` and a wheel carries inside the package."""
+    inside = PACKAGE / folder
+    return inside if inside.is_dir() else PACKAGE.parents[1] / folder
+
+
+def load(path: Path, prefix: str) -> ModuleType:
+    """Import a file by path, once; registered before it runs (dataclasses need that)."""
+    place = hashlib.sha256(str(path.resolve()).encode()).hexdigest()[:8]
+    name = f"quatspline_{prefix}_{path.stem}_{place}"
+    if name in sys.modules:
+        return sys.modules[name]
+    spec = importlib.util.spec_from_file_location(name, path)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[name]
+        raise
+    return module
+
+
+def folders() -> list[Path]:
+    """Where files with schemes are looked for."""
+    extra = [Path(p) for p in os.environ.get(FOLDERS, "").split(os.pathsep) if p]
+    return [PACKAGE / "schemes", shipped("baselines"), *extra]
+
+
+def found() -> dict[str, Found]:
+    """Every scheme by name, those that cannot be used included, with the reason."""
+    files = (path for folder in folders() for path in sorted(folder.glob("[!_]*.py")))
+    return _found(tuple(files))
+
+
+@cache
+def _found(files: tuple[Path, ...]) -> dict[str, Found]:
+    everything: dict[str, Found] = {}
+    for item in _discover(files):
+        if item.name in everything:
+            raise ValueError(
+                f"two schemes are called {item.name!r}: {everything[item.name].origin} and {item.origin}"
+            )
+        everything[item.name] = item
+    return dict(sorted(everything.items()))
+
+
+def schemes() -> list[str]:
+    """Sorted names of every usable scheme, peers included where their library imports."""
+    return [name for name, item in found().items() if item.scheme is not None]
+
+
+def scheme(name: str) -> type[Curve]:
+    """The class of a scheme.
+
+    Raises
+    ------
+    ValueError
+        An unknown name (with the nearest known one), or a scheme that cannot be used and why.
+    """
+    everything = found()
+    if name not in everything:
+        raise ValueError(f"unknown scheme {name!r}: {nearest(name, everything)}")
+    item = everything[name]
+    if item.scheme is None:
+        raise ValueError(f"scheme {name!r} cannot be used: {item.problem}")
+    return item.scheme
+
+
+def build(
+    name: str,
+    times: ArrayLike | None,
+    quaternions: Any,
+    *,
+    closed: bool = False,
+    align: bool = True,
+    **options: Any,
+) -> Curve:
+    """The curve of a scheme through keyframes: the scheme's class called (see `Curve`).
+
+    Examples
+    --------
+    >>> import quatspline as qs
+    >>> curve = qs.build("quartic", [0, 1, 2], [[1, 0, 0, 0], [0.8, 0.6, 0, 0], [0.6, 0.8, 0, 0]])
+    >>> curve(0.5).shape, curve([0.5, 1.5], order=1).shape
+    ((4,), (2, 3))
+    """
+    return scheme(name)(times, quaternions, closed=closed, align=align, **options)
+
+
+def _discover(files: tuple[Path, ...]) -> Iterator[Found]:
+    yield from map(_from_file, files)
+    for entry in sorted(importlib.metadata.entry_points(group=ENTRY_POINTS), key=lambda e: e.name):
+        yield _from_entry(entry)
+
+
+def _from_file(path: Path) -> Found:
+    name = path.stem.replace("_", "-")
+    try:
+        if path.parent == PACKAGE / "schemes":
+            module = importlib.import_module(f"quatspline.schemes.{path.stem}")
+        else:
+            module = load(path, "baseline")
+        classes = [
+            value
+            for value in vars(module).values()
+            if isinstance(value, type)
+            and issubclass(value, Curve)
+            and value.__module__ == module.__name__
+            and not value.__name__.startswith("_")
+        ]
+        if len(classes) != 1:
+            raise TypeError(f"one subclass of Curve expected, {len(classes)} found")
+    except Exception as error:  # a broken plug-in must not take the others down
+        return Found(name, str(path), None, f"{type(error).__name__}: {error}")
+    return _usable(name, str(path), classes[0])
+
+
+def _from_entry(entry: importlib.metadata.EntryPoint) -> Found:
+    try:
+        scheme = entry.load()
+    except Exception as error:
+        return Found(entry.name, entry.value, None, f"{type(error).__name__}: {error}")
+    return _usable(entry.name, entry.value, scheme)
+
+
+def _usable(name: str, origin: str, scheme: type[Curve]) -> Found:
+    scheme.name = name
+    if scheme.peer is not None:
+        try:
+            importlib.metadata.version(scheme.peer)
+        except importlib.metadata.PackageNotFoundError:
+            return Found(name, origin, None, f"{scheme.peer} is not installed (extra 'peers')")
+    return Found(name, origin, scheme)
