@@ -118,7 +118,8 @@ def draw_frames(
     seen = normals @ view[2] > 0.0
     rgb = _frame_colors(color, len(turn)) * mesh.tint[:, None]
     colors = shade(normals[seen], rgb[seen], view)
-    drawn = cells[seen]
+    # along the orthographic camera's axis a shift changes the order alone, not the picture
+    drawn = (cells + scale * mesh.lift[:, None, None] * view[2])[seen]
     if path is not None:
         ribbon = _ribbon(np.asarray(path, dtype=np.float64), view)
         colors = np.concatenate([colors, np.tile(to_rgb(path_color), (len(ribbon), 1))])

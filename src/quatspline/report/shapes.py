@@ -18,6 +18,7 @@ IntArray = NDArray[np.intp]
 WELD = 1e8 / np.pi
 
 KEY_PARTS = ("bow", "stem", "bit")
+_KEY_TINT, _KEY_LIFT = (1.0, 1.0, 1.0), (0.0, 0.0, 0.016)
 
 # Beads of the collar on the stem: centre x, half length and radius, from the bow to the tip.
 _BEADS = ((-0.134, 0.014, 0.057), (-0.088, 0.019, 0.070), (-0.046, 0.011, 0.050))
@@ -41,7 +42,7 @@ _BIT_CORNER, _BIT_CELL, _BIT_HALF_THICKNESS = (0.248, -0.026), 0.0146, 0.021
 
 _LIMBS = ("handle", "spout")
 TEAPOT_PARTS = ("pot", "handle", "spout", "lid", "inside")
-_TEAPOT_TINT = (1.0, 1.0, 1.0, 1.0, 0.45)
+_TEAPOT_TINT, _TEAPOT_LIFT = (1.0, 1.0, 1.0, 1.0, 0.45), (0.0, 0.02, 0.03, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -53,18 +54,22 @@ class Mesh:
         cells: (c, 4) vertex indices, anticlockwise as seen from outside.
         part: (c,) the part of the body that a cell belongs to (an index: 0, 1, …).
         tint: (c,) brightness of a cell's colour, 1 but for what lies in the dark.
+        lift: (c,) how much nearer to the camera a cell counts when cells are sorted by depth, in
+            the body's unit: a part that grows out of another wins where the two meet.
     """
 
     vertices: FloatArray
     cells: IntArray
     part: IntArray
     tint: FloatArray
+    lift: FloatArray
 
     @property
     def faces(self) -> IntArray:
         """The cells' triangles, those without area (at poles) left out: (f, 3)."""
         halves = self.cells[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3)
-        return halves[(halves != np.roll(halves, 1, axis=1)).all(axis=1)]
+        distinct: IntArray = halves[(halves != np.roll(halves, 1, axis=1)).all(axis=1)]
+        return distinct
 
     def corners(self) -> FloatArray:
         """Return the corners of every cell: (c, 4, 3)."""
@@ -74,7 +79,8 @@ class Mesh:
         """Return the outward unit normal of every cell, across its two diagonals: (c, 3)."""
         a, b, c, d = np.moveaxis(self.corners(), 1, 0)
         cross = np.cross(c - a, d - b)
-        return cross / np.linalg.norm(cross, axis=1, keepdims=True)
+        unit: FloatArray = cross / np.linalg.norm(cross, axis=1, keepdims=True)
+        return unit
 
     def border(self) -> IntArray:
         """Return the directed edges (e, 2) that no neighbouring face answers: none if closed."""
@@ -84,11 +90,13 @@ class Mesh:
         return edges[~answered]
 
 
-def mesh_of_quads(quads: Sequence[FloatArray], tint: Sequence[float] | None = None) -> Mesh:
+def mesh_of_quads(
+    quads: Sequence[FloatArray], tint: Sequence[float], lift: Sequence[float]
+) -> Mesh:
     """Return the mesh of several parts, each given as quadrilaterals (k, 4, 3).
 
     Corners run anticlockwise as seen from outside. Within a part coincident corners are one
-    vertex; parts share no vertices. `tint` is the brightness of each part, 1 by default.
+    vertex; parts share no vertices. `tint` and `lift` are given for each part.
     """
     meshes = [_weld(part) for part in quads]
     sizes = [len(cells) for _, cells in meshes]
@@ -97,7 +105,8 @@ def mesh_of_quads(quads: Sequence[FloatArray], tint: Sequence[float] | None = No
         vertices=np.concatenate([vertices for vertices, _ in meshes]),
         cells=np.concatenate([c + start for (_, c), start in zip(meshes, starts, strict=True)]),
         part=np.repeat(np.arange(len(meshes)), sizes),
-        tint=np.repeat(np.ones(len(meshes)) if tint is None else np.asarray(tint), sizes),
+        tint=np.repeat(np.asarray(tint), sizes),
+        lift=np.repeat(np.asarray(lift), sizes),
     )
 
 
@@ -197,7 +206,8 @@ def key_mesh(resolution: int = 28) -> Mesh:
     towards -z, and y = 0 is its mirror plane. Its three parts (`KEY_PARTS`) are closed surfaces
     that enter one another. `resolution` is the number of facets around the stem.
     """
-    return mesh_of_quads([_bow(4 * resolution, resolution), _stem(resolution), _bit()])
+    parts = [_bow(4 * resolution, resolution), _stem(resolution), _bit()]
+    return mesh_of_quads(parts, _KEY_TINT, _KEY_LIFT)
 
 
 def teapot_mesh(resolution: int = 16) -> Mesh:
@@ -218,7 +228,7 @@ def teapot_mesh(resolution: int = 16) -> Mesh:
     # the published patches face inwards: swapping u and v turns them
     quads = [_cells(np.swapaxes(outer[name], 1, 2)) for name in TEAPOT_PARTS[:-1]]
     quads = [*quads, _seals(parts, points)]
-    return mesh_of_quads([(part - middle) / length for part in quads], _TEAPOT_TINT)
+    return mesh_of_quads([(part - middle) / length for part in quads], _TEAPOT_TINT, _TEAPOT_LIFT)
 
 
 def _seals(parts: tuple[str, ...], points: FloatArray) -> FloatArray:

@@ -46,7 +46,8 @@ def patch_points(nets: FloatArray, resolution: int) -> FloatArray:
     if resolution < 1:
         raise ValueError(f"a patch needs at least one cell a side, not {resolution}")
     basis = bernstein(np.linspace(0.0, 1.0, resolution + 1))
-    return np.einsum("ai,bj,pijc->pabc", basis, basis, nets)
+    points: FloatArray = np.einsum("ai,bj,pijc->pabc", basis, basis, nets)
+    return points
 
 
 def outer_points(nets: FloatArray, resolution: int) -> FloatArray:
@@ -63,7 +64,8 @@ def outer_points(nets: FloatArray, resolution: int) -> FloatArray:
     start = fine[outside.argmax(axis=1)][:, None]
     stop = fine[::-1][outside[:, ::-1].argmax(axis=1)][:, None]
     along = bernstein(start + (stop - start) * even[:, None])
-    return np.einsum("pabi,bj,pijc->pabc", along, across, nets)
+    points: FloatArray = np.einsum("pabi,bj,pijc->pabc", along, across, nets)
+    return points
 
 
 def _body_radius() -> tuple[FloatArray, FloatArray]:

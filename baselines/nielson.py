@@ -1,0 +1,221 @@
+"""nu-quaternion spline of Nielson (2004): cubic B-spline by nested slerps, solved by iteration."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from quatspline._jit import compiled, fit_kernel
+from quatspline.families.arcs import SIZE as ARC
+from quatspline.families.arcs import set_arc
+from quatspline.families.nested import TRIANGLE, set_parameter
+from quatspline.families.segments import SegmentCurve
+from quatspline.keyframes import Keyframes
+from quatspline.options import Count, OnFailure, Positive, Stop, per_keyframe
+from quatspline.primitives import arc_angle, slerp
+
+STALLED = 4 * np.finfo(float).eps
+"""A relative change this small moves nothing any more."""
+
+
+class Nielson(SegmentCurve):
+    """nu-spline of Nielson (2004): interpolating cubic B-spline by de Casteljau with slerps.
+
+    C^1 (not C^2: the acceleration jumps at keyframes, by O(h^3) on smooth motion), interpolating,
+    global; order 4.  Control quaternions d_i, with h_i = t_i - t_{i-1} and tension nu_i:
+
+        gamma_i  = 2 (h_i + h_{i+1}) / (nu_i h_i h_{i+1} + 2 (h_i + h_{i+1}))                     (1)
+        lambda_i = (gamma_{i-1} h_{i-1} + h_i) / (gamma_{i-1} h_{i-1} + h_i + gamma_i h_{i+1})    (2)
+        mu_i     = gamma_i h_i / (gamma_i h_i + h_{i+1} + gamma_{i+1} h_{i+2})                    (3)
+        L_i = slerp(d_{i-1}, d_i, lambda_i),  R_i = slerp(d_i, d_{i+1}, mu_i)                     (4)
+        q_i = slerp(L_i, R_i, delta_i),  delta_i = h_i / (h_i + h_{i+1})                          (5)
+
+    Segment i is de Casteljau's algorithm on (q_i, R_i, L_{i+1}, q_{i+1}).  The published iteration
+    solves (5) for each d_i in turn from the others [nielson2004].
+    """
+
+    title = "Nielson's nu-quaternion spline"
+    reference = "nielson2004"
+    continuity = 1
+    order = 4
+    support = None
+    constant_rate = "everywhere"
+    iterative = True
+    family = TRIANGLE
+    operations = {"slerps per sample": 6, "slerps per keyframe and iteration": 2}
+
+    def _fit(
+        self,
+        keyframes: Keyframes,
+        *,
+        tension: ArrayLike = 0.0,
+        ends: Literal["natural", "stationary"] = "natural",
+        method: Literal["jacobi", "gauss-seidel"] = "jacobi",
+        stop: Stop = "residual",
+        tolerance: Positive = 1e-6,
+        max_iterations: Count = 2000,
+        on_failure: OnFailure = "raise",
+    ) -> None:
+        nu = per_keyframe("tension", tension, keyframes.count)
+        if (nu < 0.0).any():
+            i = int(np.argmax(nu < 0.0))
+            raise ValueError(f"tension[{i}] = {nu[i]:g}: must not be negative")
+        if (nu > 0.0).any():
+            self.order = 2
+        if ends == "stationary" and not keyframes.closed:
+            self.constant_rate = "no"
+        switches = [method == "jacobi", stop == "residual", tolerance, max_iterations]
+        parameters = np.array([*switches, ends == "stationary", *nu], dtype=float)
+        self._report(method, stop, tolerance, self._solve(FIT, parameters), on_failure)
+
+
+@compiled
+def _spacing(h, i, n, closed, stationary):
+    """h_i = t_i - t_{i-1}; the phantoms h_0, h_n are 0 (stationary) or as their neighbours."""
+    if closed:
+        return h[(i - 1) % n]
+    if i < 1 or i > n - 1:
+        return 0.0 if stationary else h[0 if i < 1 else n - 2]
+    return h[i - 1]
+
+
+@compiled
+def _weights(h, closed, stationary, nu):
+    """lambda, mu, delta of every keyframe: (n, 3)."""
+    n = nu.size
+    gamma = np.empty(n)
+    weights = np.empty((n, 3))
+    for i in range(n):
+        a, b = _spacing(h, i, n, closed, stationary), _spacing(h, i + 1, n, closed, stationary)
+        gamma[i] = 2.0 * (a + b) / (nu[i] * a * b + 2.0 * (a + b))
+    for i in range(n):
+        before, after = gamma[(i - 1) % n], gamma[(i + 1) % n]
+        h0 = _spacing(h, i - 1, n, closed, stationary)
+        h1 = _spacing(h, i, n, closed, stationary)
+        h2 = _spacing(h, i + 1, n, closed, stationary)
+        h3 = _spacing(h, i + 2, n, closed, stationary)
+        weights[i, 0] = (before * h0 + h1) / (before * h0 + h1 + gamma[i] * h2)
+        weights[i, 1] = gamma[i] * h1 / (gamma[i] * h1 + h2 + after * h3)
+        weights[i, 2] = h1 / (h1 + h2)
+    return weights
+
+
+@compiled
+def _point(d, i, sign):
+    """d_i of closed data continues as d_{i+n} = sign d_i."""
+    n = d.shape[0]
+    s = sign if i < 0 or i >= n else 1.0
+    i %= n
+    return s * d[i, 0], s * d[i, 1], s * d[i, 2], s * d[i, 3]
+
+
+@compiled
+def _ratio(x, theta, sine):
+    """sin(x theta) / sin(theta), x in the limit."""
+    return math.sin(x * theta) / sine if theta > 0.0 else x
+
+
+@compiled
+def _sides(d, i, weights, sign):
+    """(4): L_i and R_i."""
+    a, b, c = _point(d, i - 1, sign), _point(d, i, sign), _point(d, i + 1, sign)
+    left = slerp(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3], weights[i, 0])
+    right = slerp(b[0], b[1], b[2], b[3], c[0], c[1], c[2], c[3], weights[i, 1])
+    return left, right
+
+
+@compiled
+def _update(d, i, weights, sign, q, out):
+    """(5) solved for d_i, the others and the angles held."""
+    a, b, c = _point(d, i - 1, sign), _point(d, i, sign), _point(d, i + 1, sign)
+    left, right = _sides(d, i, weights, sign)
+    ta, sa, _ = arc_angle(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3])
+    tc, sc, _ = arc_angle(b[0], b[1], b[2], b[3], c[0], c[1], c[2], c[3])
+    beta, sb, _ = arc_angle(
+        left[0], left[1], left[2], left[3], right[0], right[1], right[2], right[3]
+    )
+    lam, mu, delta = weights[i]
+    s1, s2 = _ratio(1.0 - delta, beta, sb), _ratio(delta, beta, sb)
+    before, after = s1 * _ratio(1.0 - lam, ta, sa), s2 * _ratio(mu, tc, sc)
+    own = s1 * _ratio(lam, ta, sa) + s2 * _ratio(1.0 - mu, tc, sc)
+    norm = 0.0
+    for k in range(4):
+        out[i, k] = (q[i, k] - before * a[k] - after * c[k]) / own
+        norm += out[i, k] * out[i, k]
+    norm = math.sqrt(norm)
+    for k in range(4):
+        out[i, k] /= norm
+
+
+@compiled
+def _miss(d, i, weights, sign, q):
+    """The rotation angle between slerp(L_i, R_i, delta_i) and q_i."""
+    a, b = _sides(d, i, weights, sign)
+    p = slerp(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3], weights[i, 2])
+    theta, _, _ = arc_angle(p[0], p[1], p[2], p[3], q[i, 0], q[i, 1], q[i, 2], q[i, 3])
+    return 2.0 * theta
+
+
+@compiled
+def _residual(d, first, last, weights, sign, q):
+    worst = 0.0
+    for i in range(first, last):
+        miss = _miss(d, i, weights, sign, q)
+        worst = max(worst, miss) if miss == miss else math.inf  # noqa: PLR0124 - NaN
+    return worst
+
+
+@compiled
+def _iterate(q, weights, closed, sign, parameters, report):
+    """The published iteration from d = q; fills the report."""
+    jacobi, by_residual, tolerance, limit = parameters[0], parameters[1], parameters[2], parameters[3]
+    n = q.shape[0]
+    first, last = (0, n) if closed else (1, n - 1)
+    d, old = q.copy(), q.copy()
+    residual = _residual(d, first, last, weights, sign, q) if by_residual else math.inf
+    change = 0.0
+    count = 0
+    while count < limit and first < last and not (by_residual and residual <= tolerance):
+        old[:] = d
+        source = old if jacobi else d
+        for i in range(first, last):
+            _update(source, i, weights, sign, q, d)
+        moved, size = 0.0, 0.0
+        for i in range(n):
+            for k in range(4):
+                moved += (d[i, k] - old[i, k]) ** 2
+                size += d[i, k] ** 2
+        change = math.sqrt(moved / size)
+        count += 1
+        if by_residual:
+            residual = _residual(d, first, last, weights, sign, q)
+        if not (change > STALLED) or (not by_residual and change <= tolerance):
+            break
+    report[0], report[1] = count, change
+    report[2] = _residual(d, first, last, weights, sign, q)
+    return d
+
+
+@fit_kernel
+def FIT(q, h, closed, sign, parameters, segments, report):
+    """Solve for the control quaternions, then store de Casteljau's arcs of every segment."""
+    weights = _weights(h, closed, parameters[4] > 0.0, parameters[5:])
+    d = _iterate(q, weights, closed, sign, parameters, report)
+    n = q.shape[0]
+    for i in range(h.size):
+        j = (i + 1) % n
+        s = 1.0 if i + 1 < n else sign
+        p0 = _point(q, i, sign)
+        p3 = _point(q, i + 1, sign)
+        a, b, c = _point(d, i, sign), _point(d, i + 1, sign), _point(d, i, sign)
+        p1 = slerp(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3], weights[i, 1])
+        p2 = slerp(c[0], c[1], c[2], c[3], b[0], b[1], b[2], b[3], weights[j, 0])
+        r0 = set_arc(segments, i, 0, p0[0], p0[1], p0[2], p0[3], p1[0], p1[1], p1[2], p1[3])
+        r1 = set_arc(segments, i, ARC, p1[0], p1[1], p1[2], p1[3], p2[0], p2[1], p2[2], p2[3])
+        r2 = set_arc(segments, i, 2 * ARC, p2[0], p2[1], p2[2], p2[3], p3[0], p3[1], p3[2], p3[3])
+        for k in range(6):
+            set_parameter(segments, i, k, 0.0, 1.0)
+        report[3] = max(report[3], r0, r1, r2)

@@ -1,0 +1,53 @@
+"""Spherical linear interpolation (slerp): the plain reference."""
+
+from __future__ import annotations
+
+from quatspline._jit import fit_kernel
+from quatspline.families.arcs import ARC, set_arc
+from quatspline.families.segments import SegmentCurve
+from quatspline.keyframes import Keyframes
+
+
+class Slerp(SegmentCurve):
+    """Piecewise spherical linear interpolation, Shoemake (1985).
+
+    C^0, interpolating, local (two keyframes shape a segment), constant rate on each segment:
+
+        Q(u) = q_i (q_i^-1 q_{i+1})^u = q_i cos(u theta) + b_i sin(u theta)                      (1)
+
+    with b_i orthogonal to q_i on the arc to q_{i+1} [shoemake1985].
+    """
+
+    title = "Spherical linear interpolation (slerp)"
+    reference = "shoemake1985"
+    continuity = 0
+    order = 2
+    support = 2
+    constant_rate = "everywhere"
+    family = ARC
+    operations = {"slerps per sample": 1, "logs per keyframe": 1}
+
+    def _fit(self, keyframes: Keyframes) -> None:
+        self._solve(FIT)
+
+
+@fit_kernel
+def FIT(q, h, closed, sign, parameters, segments, report):
+    """The arc from each keyframe to the next."""
+    n = q.shape[0]
+    for i in range(h.size):
+        j, s = (i + 1, 1.0) if i + 1 < n else (0, sign)
+        theta = set_arc(
+            segments,
+            i,
+            0,
+            q[i, 0],
+            q[i, 1],
+            q[i, 2],
+            q[i, 3],
+            s * q[j, 0],
+            s * q[j, 1],
+            s * q[j, 2],
+            s * q[j, 3],
+        )
+        report[3] = max(report[3], theta)
