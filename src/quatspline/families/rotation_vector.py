@@ -17,6 +17,8 @@ are polynomials in z, S and C, so that no angle, however small, loses digits.
 
 from __future__ import annotations
 
+import math
+
 from quatspline._jit import BLOCK, CONSTANTS, RESULT, ROWS, Kernel, inlined, sample_kernel
 from quatspline.families.cumulative import hermite
 from quatspline.families.segments import Family, carray
@@ -89,23 +91,38 @@ def set_base(segments, i, w, x, y, z):
 
 
 @inlined
-def set_component(segments, i, k, f0, d0, c0, f1, d1, c1):
-    """Component k of phi on segment i by values, slopes and second derivatives at both ends.
-
-    Returns the square of its largest Bernstein coefficient, a bound of phi_k^2 on [0, 1].
-    """
+def set_component(segments, i, k, c0, c1, c2, c3, c4, c5):
+    """Coefficients of component k of phi on segment i."""
     p = PHI + 6 * k
-    a = hermite(f0, d0, c0, f1, d1, c1)
-    segments[i, p] = a[0]
-    segments[i, p + 1] = a[1]
-    segments[i, p + 2] = a[2]
-    segments[i, p + 3] = a[3]
-    segments[i, p + 4] = a[4]
-    segments[i, p + 5] = a[5]
-    b1, b2 = f0 + d0 / 5, f0 + 0.4 * d0 + c0 / 20
-    b4, b3 = f1 - d1 / 5, f1 - 0.4 * d1 + c1 / 20
-    bound = max(abs(f0), abs(b1), abs(b2), abs(b3), abs(b4), abs(f1))
-    return bound * bound
+    segments[i, p] = c0
+    segments[i, p + 1] = c1
+    segments[i, p + 2] = c2
+    segments[i, p + 3] = c3
+    segments[i, p + 4] = c4
+    segments[i, p + 5] = c5
+
+
+@inlined
+def _length(x, y, z):
+    return math.sqrt(x * x + y * y + z * z)
+
+
+@inlined
+def set_hermite(segments, i, d, e, f, g, k):
+    """phi on segment i from 0 to f: slopes d and g, second derivatives e and k, at u = 0 and 1.
+
+    Returns a bound of |phi| on [0, 1]: the longest Bernstein coefficient.
+    """
+    for c in range(3):
+        a = hermite(0.0, d[c], e[c], f[c], g[c], k[c])
+        set_component(segments, i, c, a[0], a[1], a[2], a[3], a[4], a[5])
+    b1 = _length(d[0], d[1], d[2]) / 5
+    b2 = _length(0.4 * d[0] + e[0] / 20, 0.4 * d[1] + e[1] / 20, 0.4 * d[2] + e[2] / 20)
+    b3 = _length(
+        f[0] - 0.4 * g[0] + k[0] / 20, f[1] - 0.4 * g[1] + k[1] / 20, f[2] - 0.4 * g[2] + k[2] / 20
+    )
+    b4 = _length(f[0] - g[0] / 5, f[1] - g[1] / 5, f[2] - g[2] / 5)
+    return max(b1, b2, b3, b4, _length(f[0], f[1], f[2]))
 
 
 @inlined

@@ -1,0 +1,63 @@
+# quatspline: every target makes its own environment; a second call does not reinstall.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+RUN := $(BIN)/python -m quatspline
+PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check install --constraint requirements.lock
+QUICK ?=
+NAME ?=
+
+.DEFAULT_GOAL := help
+.PHONY: help reproduce benchmark benchmark-speed test lint format new-baseline check-baseline lock clean
+
+help: ## Show the targets
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /|/' | awk -F'|' '{printf "  make %-16s %s\n", $$1, $$2}'
+
+# The environment proper: the package with the third-party schemes, then its kernels compiled once.
+$(VENV)/run: pyproject.toml requirements.lock
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "quatspline needs Python 3.11 or newer; set PYTHON=")'
+	@$(PYTHON) -m venv $(VENV)
+	@echo "installing into $(VENV) ..."
+	@$(PIP) --editable .
+	@$(PIP) --editable '.[peers]' || echo "some third-party schemes could not be installed: their rows will read n/a"
+	@$(BIN)/python -m quatspline.warmup
+	@touch $@
+
+$(VENV)/test: $(VENV)/run
+	@$(PIP) --editable '.[peers,test,dev,dask]'
+	@touch $@
+
+reproduce: $(VENV)/run ## The paper in full and every other experiment at quick size, into results/
+	@$(RUN) run
+
+benchmark: $(VENV)/run ## Every experiment at full size (QUICK=1: all at quick size)
+	@$(RUN) run $(if $(QUICK),--quick,--full)
+
+test: $(VENV)/test lint ## Lint, types and all tests
+	@$(BIN)/python -m pytest -n 2 --dist worksteal -q
+
+lint: $(VENV)/test ## Lint, format check and type check
+	@$(BIN)/ruff check --quiet .
+	@$(BIN)/ruff format --quiet --check .
+	@$(BIN)/mypy --no-error-summary
+
+format: $(VENV)/test ## Format the sources
+	@$(BIN)/ruff check --quiet --fix . ; $(BIN)/ruff format --quiet .
+
+new-baseline: $(VENV)/run ## Write a working template: NAME=my_scheme
+	@$(BIN)/python -m quatspline.scaffold '$(NAME)'
+
+check-baseline: $(VENV)/test ## Conformance and claims of one scheme: NAME=my_scheme
+	@$(BIN)/python -m pytest -q tests/test_conformance.py tests/test_claims.py --scheme '$(NAME)'
+
+lock: ## Renew requirements.lock from the newest releases
+	@rm -rf $(VENV)-lock && $(PYTHON) -m venv $(VENV)-lock
+	@$(VENV)-lock/bin/pip --quiet --disable-pip-version-check install --editable '.[peers,test,dev,dask]'
+	@(echo "# Versions that this release was tested with: constraints for pip, renewed by make lock."; \
+	  $(VENV)-lock/bin/pip --disable-pip-version-check freeze --exclude-editable) > requirements.lock.new
+	@mv requirements.lock.new requirements.lock && rm -rf $(VENV)-lock
+
+clean: ## Remove the environment, caches and generated results
+	@rm -rf $(VENV) build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
+	@find results -mindepth 1 -maxdepth 1 ! -name reference ! -name README.md -exec rm -rf {} +
+	@find . -name __pycache__ -not -path './.git/*' -prune -exec rm -rf {} +
