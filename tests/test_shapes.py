@@ -67,7 +67,7 @@ def test_teapot_data_cannot_be_overwritten() -> None:
 def test_each_part_is_its_own_mirror_image(part: str) -> None:
     points = patch_points(nets_of(part), RESOLUTION)
     assert same_points(points, points * [1.0, -1.0, 1.0])
-    assert not same_points(points, points + [0.0, 0.01, 0.0])
+    assert not same_points(points, np.add(points, [0.0, 0.01, 0.0]))
 
 
 @pytest.mark.parametrize("part", ROUND_PARTS)

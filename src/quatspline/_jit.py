@@ -9,13 +9,14 @@ Three kinds of compiled code share the settings of this module.
               (evaluates a block of samples) and `fit_kernel` (turns keyframes into segments).
 
 numba's disk cache does not notice an edit to a function that a cached kernel calls in another
-file, so the cache folder is keyed by a hash of every source file that takes part.
+file, so each file's cache folder is keyed by a hash of all the sources that take part in it.
 """
 
 from __future__ import annotations
 
 import hashlib
 import os
+import re
 import tempfile
 import threading
 from collections.abc import Callable
@@ -48,14 +49,11 @@ SETTINGS: dict[str, Any] = {
 
 
 @cache
-def cache_folder() -> str:
-    """The folder of compiled code, named after the sources that it was compiled from."""
-    package = Path(__file__).parent
+def cache_folder(source: Path) -> str:
+    """The folder for code compiled from a file, named after all sources that take part in it."""
     digest = hashlib.sha256(numba.__version__.encode())
-    for source in sorted(package.rglob("*.py")):
-        text = source.read_bytes()
-        if b"_jit" in text:
-            digest.update(text)
+    for path in sorted(_compiled_from(source)):
+        digest.update(path.read_bytes())
     import platformdirs
 
     base = os.environ.get("QUATSPLINE_CACHE") or platformdirs.user_cache_dir("quatspline")
@@ -67,10 +65,26 @@ def cache_folder() -> str:
     return str(folder)
 
 
-def _cached(decorate: Callable[[], Any]) -> Any:
+def _compiled_from(source: Path) -> set[Path]:
+    """A file and the files of this package that it imports compiled code from, and so on."""
+    package, seen, pending = Path(__file__).parent, {Path(__file__)}, [source]
+    while pending:
+        path = pending.pop()
+        seen.add(path)
+        for module in IMPORT.findall(path.read_text(encoding="utf-8")):
+            found = package.joinpath(*module.split(".")[1:]).with_suffix(".py")
+            if found not in seen and found.is_file() and "_jit import" in found.read_text("utf-8"):
+                pending.append(found)
+    return seen
+
+
+IMPORT = re.compile(r"^(?:from|import) (quatspline\.[\w.]+)", re.MULTILINE)
+
+
+def _cached(function: Callable[..., Any], decorate: Callable[[], Any]) -> Any:
     """Run a numba decorator with the cache in our folder, leaving numba's own setting alone."""
     before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = cache_folder()
+    numba.config.CACHE_DIR = cache_folder(Path(function.__code__.co_filename))
     try:
         return decorate()
     finally:
@@ -84,7 +98,7 @@ def inlined(function: Callable[..., Any]) -> Any:
 
 def compiled(function: Callable[..., Any]) -> Any:
     """Compile a function called from Python: cached on disk, free of the interpreter lock."""
-    return _cached(lambda: numba.njit(cache=True, nogil=True, **SETTINGS)(function))
+    return _cached(function, lambda: numba.njit(cache=True, nogil=True, **SETTINGS)(function))
 
 
 _compiling = threading.Lock()
@@ -105,6 +119,7 @@ class Kernel:
             with _compiling:
                 if self._compiled is None:
                     self._compiled = _cached(
+                        self.python,
                         lambda: numba.cfunc(self.signature, cache=True, **SETTINGS)(self.python)
                     )
         return int(self._compiled.address)

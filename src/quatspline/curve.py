@@ -13,12 +13,18 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
+import quatspline.schemes
 from quatspline import keyframes as kf
 from quatspline import numeric, options, quaternion
 from quatspline.quaternion import FloatArray
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
+
+# Importing the subpackage binds its name in the package, over the public function of that name.
+# It is bound once, at its first import: taken away here, before any scheme can be loaded.
+if not callable(quatspline.schemes):
+    del quatspline.schemes
 
 EDGE = 4
 """Samples this many ulp outside an open domain count as its end."""
@@ -110,6 +116,8 @@ class Curve(abc.ABC):
     """Orders that a call offers; a peer may lack some."""
     operations: ClassVar[dict[str, float]] = {}
     """Counts that no machine changes: e.g. {"exps per sample": 3, "logs per keyframe": 1}."""
+    departs: ClassVar[dict[str, str]] = {}
+    """Conformance checks that a peer, run as published, does not pass, each with its reason."""
     batched: ClassVar[bool] = False
     """Whether `_fit` and the evaluation take all tracks at once."""
 
@@ -232,7 +240,9 @@ class Curve(abc.ABC):
         shape = (*samples.shape, *self._keyframes.track_shape, 3 if order else 4)
         result = np.empty(shape) if out is None else _checked_out(out, shape)
         flat = _flat(result, samples.size, self._keyframes.tracks.shape[0])
-        self._evaluate(samples, order, flat, _checked_threads(threads))
+        threads = _checked_threads(threads)
+        if samples.size:
+            self._evaluate(samples, order, flat, threads)
         if not np.shares_memory(flat, result):
             result[...] = flat.reshape(shape)
         if order and frame == "world":
@@ -274,8 +284,8 @@ class Curve(abc.ABC):
             )
         if keyframes.closed and not self.closable:
             raise ValueError(f"closed=True: {self.name} has no closed curve")
-        if not self.non_uniform and not keyframes.uniform:
-            i = int(np.argmax(np.abs(keyframes.spacings - keyframes.spacings[0])))
+        i = None if self.non_uniform else keyframes.uneven
+        if i is not None:
             raise ValueError(
                 f"times[{i}] to times[{i + 1}] is {keyframes.spacings[i]:g}, not "
                 f"{keyframes.spacings[0]:g}: {self.name} takes uniform times only"

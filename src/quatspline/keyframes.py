@@ -66,11 +66,17 @@ class Keyframes:
         return float(self.signs[0])
 
     @property
-    def uniform(self) -> bool:
-        """Whether all spacings are equal, up to the rounding of the given times."""
+    def uneven(self) -> int | None:
+        """The first spacing that differs from spacing 0 by more than the times' rounding."""
         h = self.spacings
         rounding = 8 * np.spacing(np.abs(self.times[[0, -1]]).max())
-        return bool(h.max() - h.min() <= UNIFORM * h.min() + rounding)
+        differs = np.flatnonzero(np.abs(h - h[0]) > UNIFORM * h[0] + rounding)
+        return int(differs[0]) if differs.size else None
+
+    @property
+    def uniform(self) -> bool:
+        """Whether all spacings are equal, up to the rounding of the given times."""
+        return self.uneven is None
 
     def track(self, k: int) -> Keyframes:
         """The keyframes of one track."""
@@ -178,7 +184,8 @@ def _times(given: Any, n: int, closed: bool) -> FloatArray:
     if t.shape != (n + closed,):
         wanted = f"({n + closed},)" + (" (one more than keyframes: the return)" if closed else "")
         raise ValueError(f"times has shape {t.shape}: expected {wanted} for {n} keyframes")
-    steps = np.diff(t)
+    with np.errstate(over="ignore"):
+        steps, span = np.diff(t), t[-1] - t[0]
     stuck = np.flatnonzero(~(steps > 0.0))
     if stuck.size:
         i = int(stuck[0])
@@ -186,7 +193,7 @@ def _times(given: Any, n: int, closed: bool) -> FloatArray:
             f"times[{i + 1}] = {float(t[i + 1])!r} does not exceed times[{i}] = {float(t[i])!r}: "
             "times must strictly increase"
         )
-    if not np.isfinite(t[-1] - t[0]):
+    if not np.isfinite(span):
         raise ValueError(f"times span {t[0]!r} to {t[-1]!r}: too long for float64")
     return t
 

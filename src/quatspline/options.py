@@ -9,6 +9,7 @@ import numbers
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
+from types import UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
@@ -80,7 +81,7 @@ def checked(scheme: str, fit: Callable[..., Any], given: Mapping[str, Any]) -> d
 def _check(name: str, value: Any, kind: Any) -> None:
     origin = get_origin(kind)
     if origin is Literal:
-        if value not in get_args(kind):
+        if not (isinstance(value, str | numbers.Integral) and value in get_args(kind)):
             choices = ", ".join(repr(choice) for choice in get_args(kind))
             raise ValueError(f"{name}={value!r}: expected one of {choices}")
     elif origin is Annotated:
@@ -89,17 +90,31 @@ def _check(name: str, value: Any, kind: Any) -> None:
         for bound in bounds:
             if not bound.accepts(value):
                 raise ValueError(f"{name}={value!r}: must be {bound}")
-    elif origin is Union or origin is getattr(__import__("types"), "UnionType", None):
-        if value is None and type(None) in get_args(kind):
-            return
-        for base in get_args(kind):
-            if base is not type(None):
-                _check(name, value, base)
+    elif origin in (Union, UnionType):
+        _check_any(name, value, get_args(kind))
+    elif kind is bool:
+        if not isinstance(value, bool | np.bool_):
+            raise ValueError(f"{name}={value!r}: expected True or False")
     elif kind is int:
         if isinstance(value, bool) or not isinstance(value, numbers.Integral):
             raise ValueError(f"{name}={value!r}: expected an integer")
     elif kind is float and not (_is_number(value) and math.isfinite(value)):
         raise ValueError(f"{name}={value!r}: expected a finite number")
+
+
+def _check_any(name: str, value: Any, kinds: tuple[Any, ...]) -> None:
+    """One of several kinds has to fit; the refusal is that of the first."""
+    if value is None and type(None) in kinds:
+        return
+    refusals = []
+    for kind in kinds:
+        if kind is type(None):
+            continue
+        try:
+            return _check(name, value, kind)
+        except ValueError as refusal:
+            refusals.append(refusal)
+    raise refusals[0]
 
 
 def _is_number(value: Any) -> bool:
@@ -108,8 +123,13 @@ def _is_number(value: Any) -> bool:
 
 def per_keyframe(name: str, value: ArrayLike, count: int) -> FloatArray:
     """A scalar for every keyframe, or one number a keyframe -> (count,) float64."""
-    array = np.asarray(value)
-    if array.dtype.kind not in "iuf" or array.shape not in ((), (count,)):
+    try:
+        array = np.asarray(value)
+    except ValueError:
+        raise ValueError(f"{name}: rows of unequal length") from None
+    if array.dtype.kind not in "iuf":
+        raise ValueError(f"{name}: expected real numbers, got dtype {array.dtype}")
+    if array.shape not in ((), (count,)):
         raise ValueError(f"{name} has shape {array.shape}: expected a number or {count} of them")
     array = np.array(np.broadcast_to(array, (count,)), dtype=float)
     if not np.isfinite(array).all():

@@ -117,10 +117,11 @@ def between(u: ArrayLike, v: ArrayLike) -> FloatArray:
     directions = []
     for name, given in (("u", u), ("v", v)):
         vector = np.asarray(given, dtype=float)
-        length = np.linalg.norm(vector, axis=-1, keepdims=True)
-        if not np.all(length > 0.0):
+        largest = np.max(np.abs(vector), axis=-1, keepdims=True)
+        if not np.all(largest > 0.0):
             raise ValueError(f"{name} has a direction of length zero")
-        directions.append(vector / length)
+        vector = vector / largest  # squares of very small or large numbers leave float64
+        directions.append(vector / np.linalg.norm(vector, axis=-1, keepdims=True))
     return _apply(_between, (directions[0], 3), (directions[1], 3), width=4)
 
 

@@ -73,7 +73,8 @@ def folders() -> list[Path]:
 def found() -> dict[str, Found]:
     """Every scheme by name, those that cannot be used included, with the reason."""
     files = (path for folder in folders() for path in sorted(folder.glob("[!_]*.py")))
-    return _found(tuple(files))
+    once = {path.resolve(): path for path in reversed(list(files))}  # the first folder that has it
+    return _found(tuple(reversed(once.values())))
 
 
 @cache
@@ -102,7 +103,7 @@ def scheme(name: str) -> type[Curve]:
         An unknown name (with the nearest known one), or a scheme that cannot be used and why.
     """
     everything = found()
-    if name not in everything:
+    if not isinstance(name, str) or name not in everything:
         raise ValueError(f"unknown scheme {name!r}: {nearest(name, everything)}")
     item = everything[name]
     if item.scheme is None:
@@ -154,7 +155,7 @@ def _from_file(path: Path) -> Found:
         ]
         if len(classes) != 1:
             raise TypeError(f"one subclass of Curve expected, {len(classes)} found")
-    except Exception as error:  # a broken plug-in must not take the others down
+    except (Exception, SystemExit) as error:  # a broken plug-in must not take the others down
         return Found(name, str(path), None, f"{type(error).__name__}: {error}")
     return _usable(name, str(path), classes[0])
 
@@ -162,7 +163,9 @@ def _from_file(path: Path) -> Found:
 def _from_entry(entry: importlib.metadata.EntryPoint) -> Found:
     try:
         scheme = entry.load()
-    except Exception as error:
+        if not (isinstance(scheme, type) and issubclass(scheme, Curve)):
+            raise TypeError(f"no subclass of Curve: {scheme!r}")
+    except (Exception, SystemExit) as error:
         return Found(entry.name, entry.value, None, f"{type(error).__name__}: {error}")
     return _usable(entry.name, entry.value, scheme)
 

@@ -6,8 +6,8 @@ slerp of those two at z(u), all parameters affine in u.  De Casteljau's algorith
 Squad: slerp(p_0(u), p_1(u), 2u(1 - u)).
 
 Rates propagate 2-jets (p, p', p'') in R^4 through slerp(a, b, u) = f(1 - u) a + f(u) b.  With
-delta = |a - b|^2 / 2 = 1 - cos(theta), the weight f(v, delta) = sin(v theta)/sin(theta) is analytic at
-delta = 0: v 2F1(1 + v, 1 - v; 3/2; delta/2).  The series serves small arcs, closed forms the others.
+delta = |a - b|^2 / 2 = 1 - cos(theta), the weight f(v, delta) = sin(v theta)/sin(theta) is analytic
+at delta = 0: v 2F1(1 + v, 1 - v; 3/2; delta/2).  Small arcs take the series, others closed forms.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def _arc(s, k, j, x):
 
 
 @sample_kernel
-def TRIANGLE_ORIENTATION(sheet, n):  # noqa: N802 - a constant
+def TRIANGLE_ORIENTATION(sheet, n):
     """The triangle of slerps at u."""
     s = carray(sheet, (ROWS, BLOCK))
     for j in range(n):
@@ -70,7 +70,7 @@ def TRIANGLE_ORIENTATION(sheet, n):  # noqa: N802 - a constant
 
 
 @sample_kernel
-def SQUAD_ORIENTATION(sheet, n):  # noqa: N802 - a constant
+def SQUAD_ORIENTATION(sheet, n):
     """The squad at u."""
     s = carray(sheet, (ROWS, BLOCK))
     for j in range(n):
@@ -220,7 +220,7 @@ def set_rate(s, j, q, derivative, scale):
 
 
 @sample_kernel
-def TRIANGLE_VELOCITY(sheet, n):  # noqa: N802 - a constant
+def TRIANGLE_VELOCITY(sheet, n):
     """omega of the triangle."""
     s = carray(sheet, (ROWS, BLOCK))
     for j in range(n):
@@ -229,7 +229,7 @@ def TRIANGLE_VELOCITY(sheet, n):  # noqa: N802 - a constant
 
 
 @sample_kernel
-def TRIANGLE_ACCELERATION(sheet, n):  # noqa: N802 - a constant
+def TRIANGLE_ACCELERATION(sheet, n):
     """alpha of the triangle."""
     s = carray(sheet, (ROWS, BLOCK))
     for j in range(n):
@@ -238,7 +238,7 @@ def TRIANGLE_ACCELERATION(sheet, n):  # noqa: N802 - a constant
 
 
 @sample_kernel
-def SQUAD_VELOCITY(sheet, n):  # noqa: N802 - a constant
+def SQUAD_VELOCITY(sheet, n):
     """omega of the squad."""
     s = carray(sheet, (ROWS, BLOCK))
     for j in range(n):
@@ -247,7 +247,7 @@ def SQUAD_VELOCITY(sheet, n):  # noqa: N802 - a constant
 
 
 @sample_kernel
-def SQUAD_ACCELERATION(sheet, n):  # noqa: N802 - a constant
+def SQUAD_ACCELERATION(sheet, n):
     """alpha of the squad."""
     s = carray(sheet, (ROWS, BLOCK))
     for j in range(n):

@@ -11,39 +11,19 @@ from the right Jacobian [barr1992; park1997]: with z = |phi|^2, s = sin|phi| / |
     alpha/2 = phi'' - a phi x phi'' + b phi x (phi x phi'') + b phi' x (phi x phi')
               + k (-a1 phi x phi' + b1 phi x (phi x phi')),  k = phi . phi'                      (3)
 
-where a1 = 2 da/dz and b1 = 2 db/dz.  All four are entire in z: with s = 1 + z S and c = 1 + z C they
-are polynomials in z, S and C, so that no angle, however small, loses digits.
+where a1 = 2 da/dz and b1 = 2 db/dz.  All four are entire in z: with s = 1 + z S and c = 1 + z C
+they are polynomials in z, S and C, so that no angle, however small, loses digits.
 """
 
 from __future__ import annotations
 
 import math
 
+from quatspline import primitives as sines
 from quatspline._jit import BLOCK, CONSTANTS, RESULT, ROWS, Kernel, inlined, sample_kernel
 from quatspline.families.cumulative import hermite
 from quatspline.families.segments import Family, carray
-from quatspline.primitives import (
-    C1,
-    C2,
-    C3,
-    C4,
-    C5,
-    C6,
-    C7,
-    C8,
-    S1,
-    S2,
-    S3,
-    S4,
-    S5,
-    S6,
-    S7,
-    S8,
-    cross,
-    mul,
-    sinc,
-    sinc_near,
-)
+from quatspline.primitives import cross, mul, sinc, sinc_near
 
 # notation: the constants of a segment are Q_0 (4), then for each component of phi the coefficients
 # from u^0 to u^5 (18).
@@ -59,10 +39,15 @@ SERIES = 1.0
 @inlined
 def coefficients_near(z):
     """a, b, a1, b1 of (2) and (3) for |phi| <= NEAR: no root, no division."""
-    s = ((((((S8 * z + S7) * z + S6) * z + S5) * z + S4) * z + S3) * z + S2) * z + S1
-    c = ((((((C8 * z + C7) * z + C6) * z + C5) * z + C4) * z + C3) * z + C2) * z + C1
-    ds = (((((7 * S8 * z + 6 * S7) * z + 5 * S6) * z + 4 * S5) * z + 3 * S4) * z + 2 * S3) * z + S2
-    dc = (((((7 * C8 * z + 6 * C7) * z + 5 * C6) * z + 4 * C5) * z + 3 * C4) * z + 2 * C3) * z + C2
+    # notation: s and c are S and C of the module's text, ds and dc their derivatives by z
+    k1, k2, k3, k4 = sines.S1, sines.S2, sines.S3, sines.S4
+    k5, k6, k7, k8 = sines.S5, sines.S6, sines.S7, sines.S8
+    s = ((((((k8 * z + k7) * z + k6) * z + k5) * z + k4) * z + k3) * z + k2) * z + k1
+    ds = (((((7 * k8 * z + 6 * k7) * z + 5 * k6) * z + 4 * k5) * z + 3 * k4) * z + 2 * k3) * z + k2
+    k1, k2, k3, k4 = sines.C1, sines.C2, sines.C3, sines.C4
+    k5, k6, k7, k8 = sines.C5, sines.C6, sines.C7, sines.C8
+    c = ((((((k8 * z + k7) * z + k6) * z + k5) * z + k4) * z + k3) * z + k2) * z + k1
+    dc = (((((7 * k8 * z + 6 * k7) * z + 5 * k6) * z + 4 * k5) * z + 3 * k4) * z + 2 * k3) * z + k2
     sine = 1.0 + z * s
     b1 = -2.0 * (ds + dc + s * c + z * (ds * c + s * dc))
     return sine * sine, -(s + c + z * s * c), 2.0 * sine * (c - s), b1
@@ -82,6 +67,23 @@ def coefficients(z, s, c):
 
 
 @inlined
+def half_acceleration(a, b, a1, b1, x, y, z, dx, dy, dz, ex, ey, ez):
+    """(3): alpha/2 of phi = (x, y, z), its slope d and second derivative e."""
+    tx, ty, tz = cross(x, y, z, dx, dy, dz)
+    ux, uy, uz = cross(x, y, z, tx, ty, tz)
+    gx, gy, gz = cross(dx, dy, dz, tx, ty, tz)
+    px, py, pz = cross(x, y, z, ex, ey, ez)
+    rx, ry, rz = cross(x, y, z, px, py, pz)
+    k = x * dx + y * dy + z * dz
+    f, g = k * a1, k * b1
+    return (
+        ex - a * px + b * (rx + gx) - f * tx + g * ux,
+        ey - a * py + b * (ry + gy) - f * ty + g * uy,
+        ez - a * pz + b * (rz + gz) - f * tz + g * uz,
+    )
+
+
+@inlined
 def set_base(segments, i, w, x, y, z):
     """Q_0 of segment i."""
     segments[i, Q0] = w
@@ -91,15 +93,16 @@ def set_base(segments, i, w, x, y, z):
 
 
 @inlined
-def set_component(segments, i, k, c0, c1, c2, c3, c4, c5):
-    """Coefficients of component k of phi on segment i."""
+def _set_component(segments, i, k, d0, e0, f1, d1, e1):
+    """Component k of phi on segment i: the quintic from 0 to f1 with slopes d and bends e."""
     p = PHI + 6 * k
-    segments[i, p] = c0
-    segments[i, p + 1] = c1
-    segments[i, p + 2] = c2
-    segments[i, p + 3] = c3
-    segments[i, p + 4] = c4
-    segments[i, p + 5] = c5
+    a = hermite(0.0, d0, e0, f1, d1, e1)
+    segments[i, p] = a[0]
+    segments[i, p + 1] = a[1]
+    segments[i, p + 2] = a[2]
+    segments[i, p + 3] = a[3]
+    segments[i, p + 4] = a[4]
+    segments[i, p + 5] = a[5]
 
 
 @inlined
@@ -108,21 +111,40 @@ def _length(x, y, z):
 
 
 @inlined
-def set_hermite(segments, i, d, e, f, g, k):
-    """phi on segment i from 0 to f: slopes d and g, second derivatives e and k, at u = 0 and 1.
+def inverse_jacobian(x, y, z, vx, vy, vz):
+    """Jr^-1(2 phi) v, phi = (x, y, z): v + phi x v + d phi x (phi x v); singular at |phi| = pi."""
+    r = x * x + y * y + z * z
+    s, c = sinc(r)
+    a, _, a1, _ = coefficients(r, s, c)
+    d = -0.5 * a1 / a  # (s - c) / (z s) = (1 - |phi| cot |phi|) / |phi|^2
+    tx, ty, tz = cross(x, y, z, vx, vy, vz)
+    ux, uy, uz = cross(x, y, z, tx, ty, tz)
+    return vx + tx + d * ux, vy + ty + d * uy, vz + tz + d * uz
 
-    Returns a bound of |phi| on [0, 1]: the longest Bernstein coefficient.
+
+@inlined
+def set_end_rates(segments, i, y):
+    """phi on segment i from 0 to L with given rates at both ends; returns a bound of |phi|.
+
+    y (15): L, h v_0, h^2 a_0, h v_1, h^2 a_1, where v and a are half the body velocity and
+    acceleration.  (2) and (3) are solved for the derivatives at u = 1; those at 0 are the rates.
     """
-    for c in range(3):
-        a = hermite(0.0, d[c], e[c], f[c], g[c], k[c])
-        set_component(segments, i, c, a[0], a[1], a[2], a[3], a[4], a[5])
-    b1 = _length(d[0], d[1], d[2]) / 5
-    b2 = _length(0.4 * d[0] + e[0] / 20, 0.4 * d[1] + e[1] / 20, 0.4 * d[2] + e[2] / 20)
-    b3 = _length(
-        f[0] - 0.4 * g[0] + k[0] / 20, f[1] - 0.4 * g[1] + k[1] / 20, f[2] - 0.4 * g[2] + k[2] / 20
-    )
-    b4 = _length(f[0] - g[0] / 5, f[1] - g[1] / 5, f[2] - g[2] / 5)
-    return max(b1, b2, b3, b4, _length(f[0], f[1], f[2]))
+    x, w, z = y[0], y[1], y[2]
+    r = x * x + w * w + z * z
+    s, c = sinc(r)
+    a, b, a1, b1 = coefficients(r, s, c)
+    dx, dy, dz = inverse_jacobian(x, w, z, y[9], y[10], y[11])
+    fx, fy, fz = half_acceleration(a, b, a1, b1, x, w, z, dx, dy, dz, 0.0, 0.0, 0.0)
+    ex, ey, ez = inverse_jacobian(x, w, z, y[12] - fx, y[13] - fy, y[14] - fz)
+    _set_component(segments, i, 0, y[3], y[6], x, dx, ex)
+    _set_component(segments, i, 1, y[4], y[7], w, dy, ey)
+    _set_component(segments, i, 2, y[5], y[8], z, dz, ez)
+    # Bernstein coefficients
+    b1 = _length(y[3], y[4], y[5]) / 5
+    b2 = _length(0.4 * y[3] + y[6] / 20, 0.4 * y[4] + y[7] / 20, 0.4 * y[5] + y[8] / 20)
+    b3 = _length(x - 0.4 * dx + ex / 20, w - 0.4 * dy + ey / 20, z - 0.4 * dz + ez / 20)
+    b4 = _length(x - dx / 5, w - dy / 5, z - dz / 5)
+    return max(b1, b2, b3, b4, math.sqrt(r))
 
 
 @inlined
@@ -193,23 +215,6 @@ def _velocity(near: bool) -> Kernel:
             s[RESULT + 2, j] = rate * (dz - a * tz + b * uz)
 
     return sample_kernel(kernel)
-
-
-@inlined
-def half_acceleration(a, b, a1, b1, x, y, z, dx, dy, dz, ex, ey, ez):
-    """(3): alpha/2 of phi = (x, y, z), its slope d and second derivative e."""
-    tx, ty, tz = cross(x, y, z, dx, dy, dz)
-    ux, uy, uz = cross(x, y, z, tx, ty, tz)
-    gx, gy, gz = cross(dx, dy, dz, tx, ty, tz)
-    px, py, pz = cross(x, y, z, ex, ey, ez)
-    rx, ry, rz = cross(x, y, z, px, py, pz)
-    k = x * dx + y * dy + z * dz
-    f, g = k * a1, k * b1
-    return (
-        ex - a * px + b * (rx + gx) - f * tx + g * ux,
-        ey - a * py + b * (ry + gy) - f * ty + g * uy,
-        ez - a * pz + b * (rz + gz) - f * tz + g * uz,
-    )
 
 
 def _acceleration(near: bool) -> Kernel:

@@ -84,9 +84,15 @@ class SegmentCurve(Curve):
         self._set_segments(segments, report[:, REACH].max())
         return report
 
-    def _set_segments(self, segments: FloatArray, reach: float) -> None:
-        """Take constants (K, segments, constants); reach is the largest half angle in a sample."""
+    def _set_segments(
+        self, segments: FloatArray, reach: float, knots: FloatArray | None = None
+    ) -> None:
+        """Take constants (K, segments, constants); reach is the largest half angle in a sample.
+
+        ``knots`` since the first keyframe, where segments are finer than keyframe intervals.
+        """
         self.segments = segments
+        self.segment_knots = self._keyframes.knots if knots is None else knots
         self.kernels = self.family.near if reach <= NEAR else self.family.far
 
     def _report(
@@ -130,7 +136,7 @@ class SegmentCurve(Curve):
         index: int = sample(
             self.kernels[order].address,
             order,
-            frames.knots,
+            self.segment_knots,
             self.segments,
             frames.closed,
             frames.signs,

@@ -1,4 +1,4 @@
-"""Keyframe files: CSV, TUM trajectories and NPZ; every line checked, written whole or not at all."""
+"""Keyframe files: CSV, TUM and NPZ; every line checked on reading, written whole or not at all."""
 
 from __future__ import annotations
 
@@ -24,6 +24,9 @@ NPZ_ARRAYS = ("times", "quaternions")
 
 REPEATED = 1e-6
 """A last orientation this near the first, up to sign, is the return of a closed motion."""
+
+BLOCK = 65536
+"""Rows turned into text at a time: as Python numbers they take ten times their memory."""
 
 
 class KeyframeFileError(ValueError):
@@ -80,7 +83,7 @@ Writer = Callable[[Path, Motion], None]
 def read(path: str | Path) -> Motion:
     """Read keyframes: .csv, .tum or .txt (TUM), .npz.
 
-    CSV holds ``t,qw,qx,qy,qz``, or names its columns in a header, in any order and among others; TUM
+    CSV holds ``t,qw,qx,qy,qz``, or names its columns in a header, in any order, among others; TUM
     holds ``t tx ty tz qx qy qz qw``; lines that begin with # are comments.  NPZ holds ``times`` and
     ``quaternions``.
 
@@ -117,6 +120,11 @@ def write(path: str | Path, motion: Motion) -> None:
 def write_csv(stream: TextIO, motion: Motion) -> None:
     """Write a motion as CSV to an open text stream; each number as its shortest exact decimal."""
     _write_rows(stream, motion, CSV_COLUMNS, "", ",")
+
+
+def check_suffix(path: str | Path) -> None:
+    """Refuse a name whose suffix no format has, before any work is done."""
+    _format(Path(path))
 
 
 @contextmanager
@@ -267,7 +275,9 @@ def _write_rows(
     table = np.column_stack([motion.times, motion.quaternions, x])
     pick = [(*CSV_COLUMNS, "tx", "ty", "tz").index(name) for name in columns]
     stream.write(mark + separator.join(columns) + "\n")
-    stream.writelines(separator.join(map(repr, row)) + "\n" for row in table[:, pick].tolist())
+    for block in range(0, len(table), BLOCK):
+        rows = table[block : block + BLOCK, pick].tolist()
+        stream.writelines(separator.join(map(repr, row)) + "\n" for row in rows)
 
 
 def _write_npz(path: Path, motion: Motion) -> None:

@@ -1,0 +1,69 @@
+"""Catmull-Rom spline by the pyramid of Barry and Goldman, with slerps in place of lines."""
+
+from __future__ import annotations
+
+from quatspline._jit import fit_kernel
+from quatspline.families.arcs import SIZE as ARC
+from quatspline.families.arcs import set_arc
+from quatspline.families.nested import TRIANGLE, set_parameter
+from quatspline.families.segments import SegmentCurve
+from quatspline.families.tangents import keyframe
+from quatspline.keyframes import Keyframes
+from quatspline.primitives import slerp
+
+
+class BarryGoldman(SegmentCurve):
+    """Catmull-Rom spline of Barry & Goldman (1988) with slerps, Schlag (1991).
+
+    C^1, interpolating, local (four keyframes shape a segment); order 3.  On [t_i, t_{i+1}], with
+    neighbours j = i - 1 ... i + 2 (here 0 ... 3),
+
+        p_01 = slerp(q_0, q_1; (t - t_0)/(t_1 - t_0)),  p_12 and p_23 likewise                   (1)
+        p_012 = slerp(p_01, p_12; (t - t_0)/(t_2 - t_0))                                         (2)
+        p_123 = slerp(p_12, p_23; (t - t_1)/(t_3 - t_1))                                         (3)
+        Q = slerp(p_012, p_123; (t - t_1)/(t_2 - t_1))                                           (4)
+
+    At a keyframe it has the three-point velocity of `catmull-rom`.  The ends of open data are
+    reflected, q_{-1} = slerp(q_1, q_0; 2) and t_{-1} = 2 t_0 - t_1: order 2 there
+    [barry1988; schlag1991].
+    """
+
+    title = "Barry-Goldman-Schlag Catmull-Rom spline"
+    reference = "schlag1991"
+    continuity = 1
+    order = 3
+    support = 4
+    constant_rate = "everywhere"
+    family = TRIANGLE
+    operations = {"slerps per sample": 6, "logs per keyframe": 3}
+
+    def _fit(self, keyframes: Keyframes) -> None:
+        self._solve(FIT)
+
+
+@fit_kernel
+def FIT(q, h, closed, sign, parameters, segments, report):
+    """The three arcs of (1), and the parameters of (1)-(4) as functions of u."""
+    n = h.size
+    for i in range(n):
+        b, c = keyframe(q, i, sign), keyframe(q, i + 1, sign)
+        h1 = h[i]
+        h0, h2 = h[i - 1] if i > 0 or closed else h1, h[(i + 1) % n] if i < n - 1 or closed else h1
+        if i > 0 or closed:
+            a = keyframe(q, i - 1, sign)
+        else:
+            a = slerp(c[0], c[1], c[2], c[3], b[0], b[1], b[2], b[3], 2.0)
+        if i < n - 1 or closed:
+            d = keyframe(q, i + 2, sign)
+        else:
+            d = slerp(b[0], b[1], b[2], b[3], c[0], c[1], c[2], c[3], 2.0)
+        r0 = set_arc(segments, i, 0, a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3])
+        r1 = set_arc(segments, i, ARC, b[0], b[1], b[2], b[3], c[0], c[1], c[2], c[3])
+        r2 = set_arc(segments, i, 2 * ARC, c[0], c[1], c[2], c[3], d[0], d[1], d[2], d[3])
+        set_parameter(segments, i, 0, 1.0, h1 / h0)
+        set_parameter(segments, i, 1, 0.0, 1.0)
+        set_parameter(segments, i, 2, -h1 / h2, h1 / h2)
+        set_parameter(segments, i, 3, h0 / (h0 + h1), h1 / (h0 + h1))
+        set_parameter(segments, i, 4, 0.0, h1 / (h1 + h2))
+        set_parameter(segments, i, 5, 0.0, 1.0)
+        report[3] = max(report[3], r0, r1, r2)

@@ -1,0 +1,120 @@
+"""Spherical biarcs of Wang & Joe: two circular arcs a segment."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from quatspline._jit import compiled, fit_kernel
+from quatspline.families.circles import BIARC, SPLIT, combine, dot, set_circle, unit
+from quatspline.families.segments import SegmentCurve
+from quatspline.families.tangents import CHART, chart_velocities, keyframe, step
+from quatspline.keyframes import Keyframes
+from quatspline.primitives import mul
+
+STILL = 1e-14
+"""A velocity below this share of its neighbours' has no direction; a sum below it no bisector."""
+
+
+class Biarc(SegmentCurve):
+    """Spherical biarcs, after Wang & Joe (1993), at constant speed on each segment.
+
+    G^1, but C^0 as a function of time (the speed jumps at keyframes), interpolating, local (four
+    keyframes shape a segment), order 2.  Unit tangents T_i are the directions of the three-point chart
+    velocities; where that vanishes (a point of return) the direction of the next step.
+
+        (1 - T_0.T_1) x^2 + (T_0.q_1 - q_0.T_1) x - (1 - q_0.q_1) = 0,    x = tan(a) >= 0           (1)
+        b_0 = q_0 cos a + T_0 sin a,  b_1 = q_1 cos a - T_1 sin a,  J = (b_0 + b_1)/|b_0 + b_1|     (2)
+
+    Tangent great arcs of equal length a meet in b_0 and b_1; the arcs q_0 to J and J to q_1 share their
+    tangent at the joint J.  Which of the one-parameter family of biarcs the publication prefers is
+    not known to us [wang1993].
+    """
+
+    title = "Spherical biarcs"
+    reference = "wang1993"
+    continuity = 0
+    order = 2
+    support = 4
+    constant_rate = "everywhere"
+    family = BIARC
+    operations = {"circle points per sample": 1, "logs per keyframe": 4}
+
+    def _fit(self, keyframes: Keyframes) -> None:
+        self._solve(FIT)
+
+
+@compiled
+def _direction(q, h, i, sign, closed, v):
+    """The direction of v at keyframe i; where it vanishes that of the next step, or of the last."""
+    x, y, z = v[0], v[1], v[2]
+    for way in (1, -1):
+        if closed or 0 <= i + way < q.shape[0]:
+            a, b, c = step(q, i, i + way, sign)
+            rate = math.sqrt(a * a + b * b + c * c) / h[(i if way > 0 else i - 1) % h.size]
+            if rate > 0.0 and math.sqrt(x * x + y * y + z * z) <= STILL * rate:
+                x, y, z = way * a, way * b, way * c
+    return (x, y, z) if x * x + y * y + z * z > 0.0 else (1.0, 0.0, 0.0)
+
+
+@compiled
+def _tangents(q, h, sign, closed):
+    """T_i of every keyframe, (n, 4)."""
+    v = chart_velocities(q, h, closed, sign, 3, CHART)
+    tangents = np.empty_like(q)
+    for i in range(q.shape[0]):
+        x, y, z = _direction(q, h, i, sign, closed, v[i])
+        t = unit(mul(q[i, 0], q[i, 1], q[i, 2], q[i, 3], 0.0, x, y, z))
+        for k in range(4):
+            tangents[i, k] = t[k]
+    return tangents
+
+
+@compiled
+def _joint(q0, t0, q1, t1):
+    """(1) and (2)."""
+    gap = combine(1.0, q1, -1.0, q0)
+    a, k, c = 1.0 - dot(t0, t1), dot(t0, q1) - dot(q0, t1), 0.5 * dot(gap, gap)
+    root = math.sqrt(k * k + 4.0 * a * c)
+    angle = math.atan2(2.0 * c, k + root) if k >= 0.0 else math.atan2(root - k, 2.0 * a)
+    cosine, sine = math.cos(angle), math.sin(angle)
+    total = combine(cosine, combine(1.0, q0, 1.0, q1), sine, combine(1.0, t0, -1.0, t1))
+    if dot(total, total) < STILL:  # parallel tangents across the step: halfway by symmetry
+        total = combine(1.0, q0, 1.0, q1)
+    return unit(total)
+
+
+@compiled
+def _arc(p, tangent, end):
+    """The arc from p to end: X, Y of `circles` (1), its angle and its length."""
+    chord = combine(1.0, end, -1.0, p)
+    ahead, size = dot(chord, tangent), dot(chord, chord)
+    aside = combine(1.0, chord, -ahead, tangent)
+    # curvature vector c = 2 aside / |chord|^2; its part along p is -1 on the sphere, whatever rounding says
+    k = 2.0 / size if size > 0.0 else 0.0
+    c = combine(k, aside, -1.0 - k * dot(aside, p), p)
+    bend = math.sqrt(dot(c, c))
+    angle = 2.0 * math.atan2(0.5 * size * bend, ahead) if size > 0.0 else 0.0
+    r = 1.0 / bend
+    return combine(r, tangent, 0.0, p), combine(r * r, c, 0.0, p), angle, r * angle
+
+
+@fit_kernel
+def FIT(q, h, closed, sign, parameters, segments, report):
+    """Both arcs of every segment, the second one run backwards from its keyframe."""
+    tangents = _tangents(q, h, sign, closed)
+    for i in range(h.size):
+        q0, q1 = keyframe(q, i, sign), keyframe(q, i + 1, sign)
+        t0, t1 = keyframe(tangents, i, sign), keyframe(tangents, i + 1, sign)
+        joint = _joint(q0, t0, q1, t1)
+        back = combine(-1.0, t1, 0.0, t1)
+        x0, y0, angle0, length0 = _arc(q0, t0, joint)
+        x1, y1, angle1, length1 = _arc(q1, back, joint)
+        total = length0 + length1
+        split = length0 / total if total > 0.0 else 0.5
+        k0 = angle0 / split if split > 0.0 else 0.0
+        k1 = angle1 / (1.0 - split) if split < 1.0 else 0.0
+        set_circle(segments, i, 0, q0, x0, y0, 0.0, k0, 0.0)
+        set_circle(segments, i, 1, q1, x1, y1, k1, -k1, 0.0)
+        segments[i, SPLIT] = split

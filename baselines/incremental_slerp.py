@@ -1,0 +1,98 @@
+"""Incremental slerp: equal steps along each arc by a two-term recurrence, and the drift it has."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from quatspline._jit import fit_kernel, inlined
+from quatspline.families.arcs import ARC, SIZE, set_arc
+from quatspline.families.segments import Family, SegmentCurve, sample
+from quatspline.families.tangents import keyframe
+from quatspline.keyframes import Keyframes
+from quatspline.options import Count
+from quatspline.primitives import arc_angle, slerp
+from quatspline.quaternion import FloatArray
+
+
+class IncrementalSlerp(SegmentCurve):
+    """Slerp by Li's incremental recurrence (iSlerp), with the rounding errors that it gathers.
+
+    C^0, interpolating up to its drift, local (two keyframes shape a segment).  From each keyframe m
+    equal steps of angle delta = theta/m go along the arc without a sine,
+
+        p_0 = q_i,  p_1 = slerp(q_i, q_{i+1}; 1/m),  p_{k+1} = 2 cos(delta) p_k - p_{k-1}        (1)
+
+    and samples between two points are slerped, all normalised:
+
+        Q(u) = slerp(p_k, p_{k+1}; m u - k),    k = floor(m u)                                   (2)
+
+    An error made at one step continues as e sin(j delta)/sin(delta) after j more, so that the drift
+    from slerp grows about as m^2: over steps of 90 degrees it was 2e-13 rad with m = 64, 9e-12 with
+    1024, 6e-10 with 4096 [li_islerp; barrera2004].  The points of (1) are kept from the fit, so
+    that samples in any order cost the same.
+
+    Options
+    -------
+    steps
+        m, the steps a segment.
+    """
+
+    title = "Incremental slerp by recurrence"
+    reference = "li_islerp"
+    continuity = 0
+    order = 2
+    support = 2
+    constant_rate = "everywhere"
+    family = ARC
+    operations = {"slerps per sample": 1, "logs per keyframe": 65}
+
+    def _fit(self, keyframes: Keyframes, *, steps: Count = 64) -> None:
+        self.operations = {**type(self).operations, "logs per keyframe": steps + 1}
+        self.family = Family(SIZE * steps, ARC.near, ARC.far)
+        self._solve(FIT, np.array([float(steps)]))
+        # Every step becomes a segment of its own.
+        self.segments = self.segments.reshape(keyframes.tracks.shape[0], -1, SIZE)
+        fine = keyframes.knots[:-1, None] + keyframes.spacings[:, None] / steps * np.arange(steps)
+        self._fine = np.append(fine, keyframes.knots[-1])
+
+    def _sample(self, t: FloatArray, order: int, out: FloatArray) -> int:
+        frames = self._keyframes
+        index: int = sample(
+            self.kernels[order].address,
+            order,
+            self._fine,
+            self.segments,
+            frames.closed,
+            frames.signs,
+            frames.times[0],
+            self._slack,
+            t,
+            out,
+        )
+        return index
+
+
+@inlined
+def _unit(p):
+    k = 1.0 / math.sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3])
+    return k * p[0], k * p[1], k * p[2], k * p[3]
+
+
+@fit_kernel
+def FIT(q, h, closed, sign, parameters, segments, report):
+    """(1) on every segment; the arc of (2) from p_k fills constants 9k ... 9k + 8."""
+    steps = int(parameters[0])
+    for i in range(h.size):
+        a, b = keyframe(q, i, sign), keyframe(q, i + 1, sign)
+        p = a
+        b = slerp(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3], 1.0 / steps)
+        _, _, cosine = arc_angle(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3])
+        k = 2.0 * cosine
+        for j in range(steps):
+            r = _unit(b)
+            theta = set_arc(segments, i, SIZE * j, p[0], p[1], p[2], p[3], r[0], r[1], r[2], r[3])
+            report[3] = max(report[3], theta)
+            c = (k * b[0] - a[0], k * b[1] - a[1], k * b[2] - a[2], k * b[3] - a[3])
+            a, b, p = b, c, r

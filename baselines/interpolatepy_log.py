@@ -1,0 +1,35 @@
+"""InterpolatePy's LogQuaternionInterpolation."""
+
+from __future__ import annotations
+
+from quatspline.families.peers import InterpolatePyCurve
+from quatspline.keyframes import Keyframes
+from quatspline.quaternion import FloatArray
+
+
+class InterpolatePyLog(InterpolatePyCurve):
+    """``interpolatepy.LogQuaternionInterpolation``: a cubic B-spline of rotation vectors.
+
+    Published as C^2 and interpolating; global.  Keyframes become rotation vectors, made continuous
+    past half a turn, and one cubic B-spline goes through them [interpolatepy; parker2023].  Rates are the
+    library's ``get_physical_kinematics`` (its ``evaluate_velocity`` is the derivative of the rotation
+    vector) from its Python backend, world frame, turned into the body frame here; one call a sample.
+    Open curves only.
+    """
+
+    title = "InterpolatePy LogQuaternionInterpolation"
+    continuity = 2
+    order = 4
+    support = None
+    constant_rate = "no"
+
+    def _fit(self, keyframes: Keyframes) -> None:
+        from interpolatepy import LogQuaternionInterpolation
+
+        self._construct(LogQuaternionInterpolation)
+
+    def _velocity(self, t: FloatArray) -> FloatArray:
+        return self._rates(lambda x: self.curve.get_physical_kinematics(x)[0], t)
+
+    def _acceleration(self, t: FloatArray) -> FloatArray:
+        return self._rates(lambda x: self.curve.get_physical_kinematics(x)[1], t)

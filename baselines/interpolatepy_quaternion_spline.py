@@ -1,0 +1,35 @@
+"""InterpolatePy's QuaternionSpline."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from quatspline.families.peers import InterpolatePyCurve
+from quatspline.keyframes import Keyframes
+
+
+class InterpolatePyQuaternionSpline(InterpolatePyCurve):
+    """``interpolatepy.QuaternionSpline``: squad inside, slerp on the first and last segment.
+
+    Published as C^1; interpolating, local.  The inner quaternions are those of even times
+    [interpolatepy; shoemake1987].  Rates by differences, world frame, turned into the body frame here;
+    one call a sample.  Open curves only.
+
+    Options
+    -------
+    method
+        "auto" (squad from four keyframes on) or "slerp", as the library calls them.
+    """
+
+    title = "InterpolatePy QuaternionSpline"
+    continuity = 1
+    order = 3
+    support = 4
+    constant_rate = "everywhere"
+
+    def _fit(self, keyframes: Keyframes, *, method: Literal["auto", "slerp"] = "auto") -> None:
+        from interpolatepy import QuaternionSpline
+
+        if method == "slerp":
+            self.continuity, self.order, self.support = 0, 2, 2
+        self._construct(QuaternionSpline, method)

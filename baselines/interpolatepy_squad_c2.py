@@ -1,0 +1,27 @@
+"""InterpolatePy's SquadC2."""
+
+from __future__ import annotations
+
+from quatspline.families.peers import InterpolatePyCurve
+from quatspline.keyframes import Keyframes
+
+
+class InterpolatePySquadC2(InterpolatePyCurve):
+    """``interpolatepy.SquadC2``: squad in a parameter that stands still at keyframes.
+
+    Published as C^2 with zero rates at both ends; interpolating, local.  The parameter of every
+    segment is the quintic with vanishing derivatives at both of its ends, so the angular velocity is zero
+    at every keyframe [interpolatepy; wittmann2023].  Rates by differences, world frame, turned into the
+    body frame here; one call a sample.  Open curves only.
+    """
+
+    title = "InterpolatePy SquadC2"
+    continuity = 2
+    order = 1
+    support = 4
+    constant_rate = "no"
+
+    def _fit(self, keyframes: Keyframes) -> None:
+        from interpolatepy import SquadC2
+
+        self._construct(SquadC2)

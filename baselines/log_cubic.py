@@ -1,0 +1,73 @@
+"""A cubic spline in one global logarithmic chart: simple, C^2, folded by the first full turn."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from quatspline import quaternion
+from quatspline.families.rotation_vector import PHI, Q0, ROTATION_VECTOR
+from quatspline.families.segments import SegmentCurve
+from quatspline.keyframes import Keyframes
+
+
+class LogCubicSpline(SegmentCurve):
+    """Log-space cubic spline [parker2023]: C^2, interpolating, global.
+
+    An ordinary cubic spline X in R^3 through the logarithms of the keyframes,
+
+        x_i = ln(q_ref^-1 q_i),    Q(t) = q_ref exp(X(t))                                        (1)
+
+    Bi-invariant, since the reference is a keyframe, but dependent on which.  The logarithm ends at
+    a full turn from the reference: beyond it the points x_i jump to the other side, and the curve
+    with them, which is shown and not refused.
+
+    Options
+    -------
+    reference
+        Index of the keyframe q_ref.
+    ends
+        "natural" (X'' = 0) or "not-a-knot" at open ends; closed curves are periodic.  One that
+        returns as -q_0 has no periodic X and is refused.
+    """
+
+    title = "Log-space cubic spline"
+    reference = "parker2023"
+    continuity = 2
+    order = 4
+    support = None
+    constant_rate = "no"
+    family = ROTATION_VECTOR
+    operations = {"exps per sample": 1, "logs per keyframe": 1}
+
+    def _fit(
+        self,
+        keyframes: Keyframes,
+        *,
+        reference: int = 0,
+        ends: Literal["natural", "not-a-knot"] = "natural",
+    ) -> None:
+        q, h = np.moveaxis(keyframes.tracks, 1, 0), keyframes.spacings
+        if not 0 <= reference < len(q):
+            raise ValueError(f"reference={reference}: the keyframes are 0 to {len(q) - 1}")
+        if keyframes.closed and (keyframes.signs < 0).any():
+            raise ValueError(
+                "closed=True: log-cubic closes only curves that return as +q_0, not -q_0"
+            )
+        base = q[reference]
+        x = quaternion.log(quaternion.mul(quaternion.conj(base), q))
+        if keyframes.closed:
+            x = np.concatenate([x, x[:1]])
+        spline = CubicSpline(keyframes.knots, x, bc_type="periodic" if keyframes.closed else ends)
+        # coefficients (power from 3 to 0, segment, track, component) of t become those of u
+        power = np.arange(4)
+        c = spline.c[::-1] * (h ** power[:, None])[:, :, None, None]
+        segments = np.zeros((len(base), h.size, self.family.constants))
+        segments[:, :, Q0:PHI] = base[:, None]
+        phi = segments[:, :, PHI:].reshape(*segments.shape[:2], 3, 6)
+        phi[..., :4] = np.moveaxis(c, (0, 1, 2, 3), (3, 1, 0, 2))
+        # Bernstein coefficients bound |phi|
+        hull = c[0], c[0] + c[1] / 3, c[0] + (2 * c[1] + c[2]) / 3, c.sum(axis=0)
+        self._set_segments(segments, max(np.linalg.norm(b, axis=-1).max() for b in hull))

@@ -1,0 +1,75 @@
+"""The curve of least torque, against which the fairness of every other curve is measured."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from quatspline.families.least_torque import REACH, minimise
+from quatspline.families.rotation_vector import ROTATION_VECTOR
+from quatspline.families.segments import SegmentCurve
+from quatspline.keyframes import Keyframes
+from quatspline.options import Count, OnFailure, Positive
+from quatspline.schemes.local_quintic import LocalQuinticSpline
+
+
+class MinimumTorqueSpline(SegmentCurve):
+    """Minimum-torque interpolant: least integral of |alpha|^2, free ends [barr1992; park1997].
+
+    C^2, interpolating, global.  Every interval between keyframes is cut into sub-intervals with
+
+        Q(u) = q_j exp(phi(u)),    phi the quintic of both ends' velocity and acceleration       (1)
+
+    and the rates at all nodes and the turns of the inner ones minimise the Gauss sum
+
+        E = sum_s sum_g w_g h_s |alpha_s(u_g)|^2                                                 (2)
+
+    by Gauss-Newton steps on the banded normal equations, damped where E would rise.  A minimum has
+    omega''' = omega'' x omega within intervals and alpha = 0 at the ends.  E bounds the true
+    minimum from above, within 1e-8 at four sub-intervals, within one homotopy class of curves.
+
+    Options
+    -------
+    subintervals
+        An interval's; 1 is within 2e-4 of the least energy.
+    tolerance, max_iterations, on_failure
+        The iteration stops when the relative change of all unknowns meets the tolerance.
+    """
+
+    title = "Minimum torque (reference)"
+    reference = "barr1992"
+    continuity = 2
+    order = 4
+    support = None
+    constant_rate = "everywhere"
+    closable = False
+    iterative = True
+    family = ROTATION_VECTOR
+    operations = {"exps per sample": 1}
+
+    def _fit(
+        self,
+        keyframes: Keyframes,
+        *,
+        subintervals: Count = 4,
+        tolerance: Positive = 1e-6,
+        max_iterations: Count = 100,
+        on_failure: OnFailure = "raise",
+    ) -> None:
+        m, tracks = subintervals, keyframes.tracks
+        h = np.repeat(keyframes.spacings / m, m)
+        inner = keyframes.knots[:-1, None] + np.arange(m) * h[::m, None]
+        knots = np.append(inner, keyframes.knots[-1])
+        start = LocalQuinticSpline.from_keyframes(keyframes)
+        t = np.minimum(keyframes.times[0] + knots, keyframes.times[-1])
+        nodes, v, a = (
+            np.moveaxis(start(t, order).reshape(t.size, len(tracks), -1), 1, 0).copy()
+            for order in (0, 1, 2)
+        )
+        nodes[:, ::m] = tracks
+        rates = np.concatenate([v, a], axis=-1) / 2
+        segments = np.empty((len(tracks), h.size, self.family.constants))
+        report = np.zeros((len(tracks), 4))
+        self.energy = minimise(nodes, rates, h, m, tolerance, max_iterations, segments, report)
+        """E of every track, rad^2 / time^3."""
+        self._set_segments(segments, report[:, REACH].max(), knots)
+        self._report("gauss-newton", "change", tolerance, report, on_failure)

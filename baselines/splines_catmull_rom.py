@@ -1,0 +1,36 @@
+"""The package splines: Catmull-Rom-like rotation spline."""
+
+from __future__ import annotations
+
+from quatspline.families.peers import PeerCurve, rows, unit_quaternions
+from quatspline.keyframes import Keyframes
+from quatspline.quaternion import FloatArray
+
+
+class SplinesCatmullRom(PeerCurve):
+    """``splines.quaternion.CatmullRom``: de Casteljau's algorithm with slerps.
+
+    C^1, interpolating, local (four keyframes shape a segment), open ends "natural", closed with
+    ``endconditions="closed"``; a call with an array of times loops in Python [splines].  Orientations
+    only: the package's own ``evaluate(t, 1)`` is not the derivative of its curve inside a segment.
+    """
+
+    title = "splines CatmullRom"
+    reference = "splines"
+    peer = "splines"
+    continuity = 1
+    order = 3
+    support = 4
+    constant_rate = "everywhere"
+
+    def _fit(self, keyframes: Keyframes) -> None:
+        from splines.quaternion import CatmullRom
+
+        self.curve = CatmullRom(
+            unit_quaternions(keyframes.quaternions),
+            keyframes.knots.tolist(),
+            endconditions="closed" if keyframes.closed else "natural",
+        )
+
+    def _orientation(self, t: FloatArray) -> FloatArray:
+        return rows(self.curve.evaluate(t), self._keyframes.quaternions[0])

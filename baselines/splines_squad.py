@@ -1,0 +1,36 @@
+"""The package splines: spherical quadrangle interpolation (squad)."""
+
+from __future__ import annotations
+
+from quatspline.families.peers import PeerCurve, reflected, rows, unit_quaternions
+from quatspline.keyframes import Keyframes
+from quatspline.quaternion import FloatArray
+
+
+class SplinesSquad(PeerCurve):
+    """``splines.quaternion.Squad``: squad with inner quaternions for uneven times.
+
+    C^1, interpolating, local (four keyframes shape a segment).  The package always closes the curve; for
+    open keyframes it is given reflected phantoms (`peers.reflected`) and evaluated between the given
+    ones, where its wrap has no influence [splines].  Orientations only.
+    """
+
+    title = "splines Squad"
+    reference = "splines"
+    peer = "splines"
+    continuity = 1
+    order = 3
+    support = 4
+    constant_rate = "everywhere"
+
+    def _fit(self, keyframes: Keyframes) -> None:
+        from splines.quaternion import Squad
+
+        q, times = keyframes.quaternions, keyframes.knots
+        if not keyframes.closed:
+            q, times = reflected(keyframes)
+        self.first = q[0]
+        self.curve = Squad(unit_quaternions(q), times.tolist())
+
+    def _orientation(self, t: FloatArray) -> FloatArray:
+        return rows(self.curve.evaluate(t), self.first)

@@ -1,0 +1,101 @@
+"""Spherical and quadrangle interpolation (squad), with three choices of its inner points."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from quatspline._jit import compiled, fit_kernel
+from quatspline.families.arcs import SIZE as ARC
+from quatspline.families.arcs import set_arc
+from quatspline.families.nested import SQUAD
+from quatspline.families.segments import SegmentCurve
+from quatspline.families.tangents import CHART, SECANT, chart_velocities, keyframe, moved, step
+from quatspline.keyframes import Keyframes
+
+TWO_A, SINGLE_A, TEXTBOOK = 0.0, 1.0, 2.0
+
+
+class Squad(SegmentCurve):
+    """Spherical and quadrangle interpolation (squad), Shoemake (1987), C^1 on arbitrary knots.
+
+    C^1, interpolating, local (four keyframes shape a segment); order 3 inside:
+
+        Q(u) = slerp(slerp(q_i, q_{i+1}; u), slerp(a_i^+, a_{i+1}^-; u); 2u(1 - u))              (1)
+
+    leaves with velocity (L_i + 2 ln(q_i^-1 a_i^+))/h_i (log units): v_i and v_{i+1} are met by
+
+        a_i^+ = q_i exp((h_i v_i - L_i)/2),    a_{i+1}^- = q_{i+1} exp((L_i - h_i v_{i+1})/2)    (2)
+
+    with v_i the slope of the parabola through three keyframes in the chart at q_i [shoemake1987].
+
+    Options
+    -------
+    inner
+        "two-a": (2).  "single-a": one point at each keyframe, a_i = a_i^+ = a_i^-, which forces
+        v_i = (L_{i-1} + L_i)/(h_{i-1} + h_i): C^1, but order 2 on non-uniform knots.  "textbook":
+        the published a_i = q_i exp((L_{i-1} - L_i)/4), which knows no times: C^0 on such knots.
+    ends
+        "chart": the parabola through the end's three keyframes; "secant": v_0 = s_0, the published
+        a_0 = q_0.  Default: "chart" with two-a, "secant" with the others.
+    """
+
+    title = "Spherical and quadrangle interpolation (squad)"
+    reference = "shoemake1987"
+    continuity = 1
+    order = 3
+    support = 4
+    constant_rate = "everywhere"
+    family = SQUAD
+    operations = {"slerps per sample": 3, "logs per keyframe": 6, "exps per keyframe": 2}
+
+    def _fit(
+        self,
+        keyframes: Keyframes,
+        *,
+        inner: Literal["two-a", "single-a", "textbook"] = "two-a",
+        ends: Literal["chart", "secant"] | None = None,
+    ) -> None:
+        if inner == "textbook" and not keyframes.uniform:
+            self.continuity, self.order, self.constant_rate = 0, 1, "no"
+        secant = ends == "secant" or (ends is None and inner != "two-a")
+        code = {"two-a": TWO_A, "single-a": SINGLE_A, "textbook": TEXTBOOK}[inner]
+        self._solve(FIT, np.array([code, SECANT if secant else CHART]))
+
+
+@compiled
+def _pull(q, h, sign, i, textbook, v):
+    """ln(q_i^-1 a_i) of the single points, as the velocities v[0] after and v[1] before keyframe i.
+
+    a_i = q_i exp((h_i L_{i-1} - h_{i-1} L_i) / (2 (h_{i-1} + h_i))); the textbook takes h = 1.
+    """
+    n = h.size
+    a, b = step(q, i - 1, i, sign), step(q, i, i + 1, sign)
+    h0, h1 = h[(i - 1) % n], h[i]
+    s0, s1 = (1.0, 1.0) if textbook else (h0, h1)
+    for c in range(3):
+        pull = (s1 * a[c] - s0 * b[c]) / (s0 + s1)
+        v[0, c] = (b[c] + pull) / h1
+        v[1, c] = (a[c] - pull) / h0
+
+
+@fit_kernel
+def FIT(q, h, closed, sign, parameters, segments, report):
+    """The two arcs of (1) by (2); parameters: inner, ends."""
+    n, inner = q.shape[0], parameters[0]
+    slopes = chart_velocities(q, h, closed, sign, 3, parameters[1])
+    v = np.empty((n, 2, 3))
+    for i in range(n):
+        v[i, 0], v[i, 1] = slopes[i], slopes[i]
+        if inner != TWO_A and (closed or 0 < i < n - 1):
+            _pull(q, h, sign, i, inner == TEXTBOOK, v[i])
+    for i in range(h.size):
+        p, r = keyframe(q, i, sign), keyframe(q, i + 1, sign)
+        x, y, z = step(q, i, i + 1, sign)
+        f, g, k = v[i, 0], v[(i + 1) % n, 1], 0.5 * h[i]
+        a = moved(p, k * f[0] - 0.5 * x, k * f[1] - 0.5 * y, k * f[2] - 0.5 * z)
+        b = moved(r, 0.5 * x - k * g[0], 0.5 * y - k * g[1], 0.5 * z - k * g[2])
+        r0 = set_arc(segments, i, 0, p[0], p[1], p[2], p[3], r[0], r[1], r[2], r[3])
+        r1 = set_arc(segments, i, ARC, a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3])
+        report[3] = max(report[3], r0, r1)

@@ -1,0 +1,106 @@
+"""How many iterations random keyframes take, against the step angle: what two cases cannot show."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from quatspline.quaternion import FloatArray
+from quatspline.registry import scheme
+from quatspline.report import style
+from quatspline.running import Run
+from quatspline.trajectories.paper import CASES, RECONSTRUCTED, SOLVE
+from quatspline.trajectories.search import steps
+from quatspline.trajectories.walks import loop, walk
+
+TITLE = "Iterations of random keyframes against the step angle"
+PAPER = True
+KEYS = ["data", "scheme", "method", "step_degrees"]
+NOTE = (
+    "Random walks of 5 keyframes (open) and random loops of 6 (closed), every step about a random axis; "
+    f"solved to a relative change of 1e-6. {RECONSTRUCTED} Their rows give their largest step."
+)
+SOLVERS = (
+    ("nielson", "jacobi"),
+    ("nielson", "gauss-seidel"),
+    ("kim", "fixed-point"),
+    ("kim", "newton"),
+)
+QUANTILES = {"least": 0.0, "q05": 0.05, "q25": 0.25, "median": 0.5, "q75": 0.75, "q95": 0.95, "most": 1.0}
+
+
+def measure(run: Run) -> pd.DataFrame:
+    trials = 200 if run.quick else 4000
+    angles = range(10, 171, 20 if run.quick else 10)
+    rows = []
+    for degrees in run.progress(angles, label="iterations"):
+        rng = run.rng("iterations", degrees)
+        for data, draw, count in (("open, 5 keyframes", walk, 5), ("closed, 6 keyframes", loop, 6)):
+            keyframes = draw(rng, count, float(degrees), trials)
+            rows += _solved(data, keyframes, count == 6, float(degrees))
+    for case in CASES.values():
+        data = f"{case.name} (reconstructed)"
+        q = case.quaternions[:, None]
+        largest = float(steps(case.quaternions[None], case.closed).max())
+        rows += _solved(data, q, case.closed, largest)
+    return pd.DataFrame(rows)
+
+
+def _solved(data: str, keyframes: FloatArray, closed: bool, degrees: float) -> list[dict[str, object]]:
+    rows = []
+    for name, method in SOLVERS:
+        curve = scheme(name)(
+            None, keyframes, closed=closed, method=method, on_failure="return", **SOLVE
+        )
+        report = curve.solve_report
+        assert report is not None
+        counts = report.iterations[report.converged]
+        spread = np.quantile(counts, list(QUANTILES.values())) if counts.size else [np.nan] * 7
+        rows.append(
+            {
+                "data": data,
+                "scheme": name,
+                "method": method,
+                "step_degrees": degrees,
+                "sets": report.converged.size,
+                "not_converged": int((~report.converged).sum()),
+                **dict(zip(QUANTILES, spread, strict=True)),
+                "share_of_16": float((counts == 16).sum() / report.converged.size),
+                "share_of_40": float((counts == 40).sum() / report.converged.size),
+            }
+        )
+    return rows
+
+
+def draw(table: pd.DataFrame) -> Figure:
+    fig, panels = style.axes(style.PAGE, 3.1, 1, 2, sharey=True)
+    for ax, data, case, mark in zip(
+        panels[0], ("open, 5 keyframes", "closed, 6 keyframes"), CASES, (16, 40), strict=True
+    ):
+        for (name, method), color in zip(SOLVERS, style.PALETTE, strict=False):
+            picked = table[(table.data == data) & (table.scheme == name) & (table.method == method)]
+            label = f"{name} ({method})"
+            ax.plot(picked["step_degrees"], picked["median"], color=color, label=label)
+            band = (picked["q05"], picked["q95"])
+            ax.fill_between(picked["step_degrees"], *band, color=color, alpha=0.15, lw=0)
+        own = table[(table.data == f"{case} (reconstructed)") & (table.method == "jacobi")]
+        ax.axhline(mark, color="black", lw=0.7, ls=":")
+        ax.annotate(f"the paper's {mark}", (10, mark), (0, 2), textcoords="offset points", fontsize=7.5)
+        ax.plot(
+            own["step_degrees"], own["median"], "k*", ms=8, label="the reconstructed case (jacobi)"
+        )
+        ax.set(title=data, xlabel="step angle (degrees)", yscale="log")
+        ax.set_yticks([2, 4, 8, 16, 40, 100, 400, 1000], ["2", "4", "8", "16", "40", "100", "400", "1000"])
+        ax.minorticks_off()
+    panels[0, 0].set_ylabel("iterations to a change of 1e-6")
+    style.letters(panels[0])
+    style.legend_of(fig, panels[0, 0], 3)
+    return fig
+
+
+def caption(table: pd.DataFrame) -> str:
+    sets = int(table.sets.max())
+    return (
+        f"Iterations of {sets} random keyframe sets a step angle: median (line) and the 5 % to 95 % band of "
+        "the sets that converge. The paper's counts, 16 and 40, are dotted; stars are the reconstructed "
+        f"cases at their largest step. {RECONSTRUCTED}"
+    )

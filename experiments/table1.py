@@ -1,0 +1,160 @@
+"""Table 1 of the paper: iterations and seconds, under its own protocol and under the other one."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from quatspline.curve import Curve
+from quatspline.instruments.protocols import PROTOCOLS, Protocol, frames
+from quatspline.instruments.timing import Contender, interleaved
+from quatspline.registry import scheme
+from quatspline.running import Run
+from quatspline.trajectories.paper import CASES, RECONSTRUCTED, SOLVE, PaperCase, Row
+
+TITLE = "Table 1: iterations and seconds"
+PAPER = True
+SCHEMES = ("quartic", "nielson", "kim")
+KEYS = ["case", "frames", "protocol", "scheme"]
+NOTE = (
+    f"{RECONSTRUCTED} The paper's seconds are its own (Matlab 7.11, Core i5-3210M), measured per frame; "
+    "they stand beside both protocols for comparison of the ratios. Rows of 9 and 12 frames include "
+    "rendering. Counts of slerps, exponentials and logarithms follow from the formulas. Timed is the "
+    "fit and the evaluation of prepared keyframes; 'public call' rows add validation."
+)
+FORMATS = {
+    "seconds_median": ".3g",
+    "seconds_iqr": ".1g",
+    "ratio_to_quartic": ".3g",
+    "paper_seconds": "g",
+    "tolerance": "g",
+}
+ROUNDS, RENDERED_ROUNDS = 21, 3
+
+
+def measure(run: Run) -> pd.DataFrame:
+    schemes = tuple(dict.fromkeys([*SCHEMES, *(run.schemes or [])]))
+    groups = [
+        (case, row, protocol)
+        for case in CASES.values()
+        for row in case.rows
+        for protocol in PROTOCOLS
+    ]
+    tables = []
+    for case, row, protocol in run.progress(groups, label="table1"):
+        tables.append(_group(run, case, row, protocol, schemes))
+    for case in CASES.values():
+        tables.append(_public(run, case, case.rows[1], schemes))
+    return pd.concat(tables, ignore_index=True)
+
+
+def _options(name: str) -> dict[str, Any]:
+    return SOLVE if scheme(name).iterative else {}
+
+
+def _group(
+    run: Run, case: PaperCase, row: Row, protocol: Protocol, schemes: tuple[str, ...]
+) -> pd.DataFrame:
+    """One case and protocol: all schemes timed against one another."""
+    t = case.frames(row.frames)
+    generators = {
+        name: frames(scheme(name), case.keyframes(), t, protocol, **_options(name))
+        for name in schemes
+    }
+    if row.rendered:
+        generators = {name: _rendering(case, t, g) for name, g in generators.items()}
+    return _timed(run, case.name, case, row, protocol, generators)
+
+
+def _rendering(
+    case: PaperCase, t: Any, generate: Callable[[int], Any]
+) -> Callable[[int], Any]:
+    from quatspline.report.motions import render
+
+    def contender(repeats: int) -> None:
+        for _ in range(repeats):
+            render(case, t, generate(1))
+
+    return contender
+
+
+def _public(run: Run, case: PaperCase, row: Row, schemes: tuple[str, ...]) -> pd.DataFrame:
+    """The public call, validation included: build and evaluate all frames."""
+    times, quaternions, t = case.times, case.quaternions, case.frames(row.frames)
+
+    def calling(cls: type[Curve], options: dict[str, Any]) -> Contender:
+        def contender(repeats: int) -> None:
+            for _ in range(repeats):
+                cls(times, quaternions, closed=case.closed, **options)(t)
+
+        return contender
+
+    contenders = {name: calling(scheme(name), _options(name)) for name in schemes}
+    return _timed(run, f"{case.name}, public call", case, row, "solve-once", contenders)
+
+
+def _timed(
+    run: Run,
+    label: str,
+    case: PaperCase,
+    row: Row,
+    protocol: Protocol,
+    contenders: dict[str, Contender],
+) -> pd.DataFrame:
+    rounds = RENDERED_ROUNDS if row.rendered else ROUNDS
+    timings = interleaved(contenders, 1 if run.quick else rounds, run.seed)
+    quartic = timings["quartic"].median
+    rows = []
+    for name, timing in timings.items():
+        rows.append(
+            {
+                "case": label,
+                "frames": row.frames,
+                "scheme": name,
+                "protocol": protocol,
+                **_counts(case, row.frames, protocol, name),
+                "seconds_median": timing.median,
+                "seconds_iqr": timing.iqr,
+                "repeats": timing.rounds * timing.loops,
+                "ratio_to_quartic": timing.median / quartic,
+                **_papers(row, name),
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def _counts(case: PaperCase, count: int, protocol: Protocol, name: str) -> dict[str, Any]:
+    """Iterations of one solve, and the operations of all frames: no machine changes them."""
+    cls = scheme(name)
+    curve = cls.from_keyframes(case.keyframes(), **_options(name))
+    report = curve.solve_report
+    iterations = report.iterations if report else 0
+    fits = count if protocol == "per-frame" else 1
+    scale = {
+        "sample": count,
+        "keyframe": fits * len(case.euler),
+        "keyframe and iteration": fits * len(case.euler) * iterations,
+    }
+    total: dict[str, float] = {"slerps": 0, "exps": 0, "logs": 0}
+    for key, number in cls.operations.items():
+        operation, _, unit = key.partition(" per ")
+        total[operation] += number * scale[unit]
+    return {
+        "iterations": iterations,
+        "tolerance": report.tolerance if report else np.nan,
+        **{operation: int(number) for operation, number in total.items()},
+    }
+
+
+def _papers(row: Row, name: str) -> dict[str, Any]:
+    """The paper's own numbers: its B-spline stands beside both constructions of one."""
+    if name == "quartic":
+        return {"paper_iterations": 0, "paper_seconds": row.quartic_seconds, "paper_ratio": 1.0}
+    if name in SCHEMES:
+        return {
+            "paper_iterations": row.iterations,
+            "paper_seconds": row.seconds,
+            "paper_ratio": row.ratio,
+        }
+    return {"paper_iterations": None, "paper_seconds": None, "paper_ratio": None}

@@ -1,0 +1,7 @@
+"""``python -m quatspline``."""
+
+import sys
+
+from quatspline.cli import main
+
+sys.exit(main())

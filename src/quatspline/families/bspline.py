@@ -1,0 +1,286 @@
+"""The cubic B-spline on the knots of an interpolant: weights, ends, and its cumulative segments.
+
+A knot t_i carries the control quaternion d_i and the basis function B_i on t_{i-2} ... t_{i+2}.
+With w_j = ln(d_{j-1}^-1 d_j) and C_j = sum of B_k over k >= j, the curve on [t_i, t_{i+1}] is
+
+    Q = d_{i-1} exp(C_i w_i) exp(C_{i+1} w_{i+1}) exp(C_{i+2} w_{i+2})     [kim1995general]     (1)
+
+At the knot itself only three functions remain,
+
+    m_i = B_{i-1}(t_i) = h_i^2 / ((h_{i-1} + h_i)(h_{i-2} + h_{i-1} + h_i)),               (2)
+    p_i = B_{i+1}(t_i) = h_{i-1}^2 / ((h_{i-1} + h_i)(h_{i-1} + h_i + h_{i+1})),           (3)
+
+and B_i(t_i) = 1 - m_i - p_i.  Beyond the ends of an open curve lie phantom knots: reflected
+(natural), or repeated (clamped: zero spacings).
+"""
+
+from __future__ import annotations
+
+import math
+
+from quatspline._jit import compiled, inlined
+from quatspline.families.cumulative import set_base, set_factor
+from quatspline.primitives import (
+    NEAR,
+    NEAR,
+    between,
+    cross,
+    log,
+    log_between,
+    mul,
+    sinc,
+    sinc_near,
+)
+
+WINDOW = 4
+"""Keyframes in the chart estimate of an end velocity: one more than the curve's order."""
+
+ROUNDING = 1e-14
+"""Half angles below this are rounding."""
+
+
+@inlined
+def row(array, k):
+    """Vector k of an (n, 3) array."""
+    return array[k, 0], array[k, 1], array[k, 2]
+
+
+@inlined
+def quaternion(array, k):
+    """Quaternion k of an (n, 4) array."""
+    return array[k, 0], array[k, 1], array[k, 2], array[k, 3]
+
+
+@inlined
+def set_quaternion(array, k, w, x, y, z):
+    """Write quaternion k of an (n, 4) array."""
+    array[k, 0], array[k, 1], array[k, 2], array[k, 3] = w, x, y, z
+
+
+@compiled
+def turned(f, w):
+    """exp(f w)."""
+    x, y, z = f * w[0], f * w[1], f * w[2]
+    n = x * x + y * y + z * z
+    if n < NEAR * NEAR:
+        s, c = sinc_near(n)
+    else:
+        s, c = sinc(n)
+    return c, s * x, s * y, s * z
+
+
+@compiled
+def _far_log(w, x, y, z):
+    return log(w, x, y, z)
+
+
+@inlined
+def small_log(w, x, y, z):
+    """The logarithm, by its series where that is exact to rounding."""
+    n = x * x + y * y + z * z
+    if w > 0.0 and n < 1e-3:
+        f = 1.0 + n * (1 / 6 + n * (3 / 40 + n * (15 / 336 + n * (105 / 3456))))
+        return f * x, f * y, f * z
+    return _far_log(w, x, y, z)
+
+
+@inlined
+def squared(v):
+    """|v|^2."""
+    return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
+
+
+@inlined
+def spacing(h, i, closed, clamped):
+    """h_i = t_{i+1} - t_i for any i, phantoms included."""
+    n = h.size
+    if i >= 0 and i < n:
+        return h[i]
+    if closed:
+        return h[i % n]
+    if clamped:
+        return 0.0
+    i %= 2 * n  # reflected at both ends
+    return h[min(i, 2 * n - 1 - i)]
+
+
+@inlined
+def weight_before(h0, h1, h2):
+    """(2): m_i of h_{i-2}, h_{i-1}, h_i."""
+    return h2 * h2 / ((h1 + h2) * (h0 + h1 + h2))
+
+
+@inlined
+def weight_after(h1, h2, h3):
+    """(3): p_i of h_{i-1}, h_i, h_{i+1}."""
+    return h1 * h1 / ((h1 + h2) * (h1 + h2 + h3))
+
+
+@compiled
+def knot_weights(h, closed, clamped, m, p):
+    """Fill m and p (segments + 1,) with (2) and (3) at every knot, the closing one included."""
+    for i in range(h.size + 1):
+        h1, h2 = spacing(h, i - 1, closed, clamped), spacing(h, i, closed, clamped)
+        m[i] = weight_before(spacing(h, i - 2, closed, clamped), h1, h2)
+        p[i] = weight_after(h1, h2, spacing(h, i + 1, closed, clamped))
+
+
+@inlined
+def middle(h1, h2, h3, after):
+    """Coefficients in u of C_{i+1} on [t_i, t_{i+1}] for h_{i-1}, h_i, h_{i+1}; after = m_{i+1}.
+
+    C_i = 1 - m_i (1 - u)^3 and C_{i+2} = p_{i+1} u^3; this one rises from p_i to 1 - m_{i+1}.
+    """
+    g = 1.0 / ((h1 + h2) * (h1 + h2 + h3))
+    c0, c1, c2 = g * h1 * h1, 3.0 * g * h1 * h2, 3.0 * g * h2 * h2
+    return c0, c1, c2, 1.0 - after - c0 - c1 - c2
+
+
+@inlined
+def blending(h0, h1, h2, h3, h4, u):
+    """B_{i-1} ... B_{i+2} at u on [t_i, t_{i+1}], from h_{i-2} ... h_{i+2}."""
+    c0, c1, c2, c3 = middle(h1, h2, h3, weight_before(h1, h2, h3))
+    v = 1.0 - u
+    first = weight_before(h0, h1, h2) * v * v * v
+    last = weight_after(h2, h3, h4) * u * u * u
+    inner = ((c3 * u + c2) * u + c1) * u + c0
+    return first, 1.0 - first - inner, inner - last, last
+
+
+@compiled
+def set_segment(segments, i, base, x, y, z, m0, coefficients, p1):
+    """Constants of (1) for segment i: base d_{i-1}, increments x, y, z; returns the reach."""
+    c0, c1, c2, c3 = coefficients
+    set_base(segments, i, base[0], base[1], base[2], base[3])
+    first = set_factor(
+        segments, i, 0, x[0], x[1], x[2], 1.0 - m0, 3.0 * m0, -3.0 * m0, m0, 0.0, 0.0
+    )
+    second = set_factor(segments, i, 1, y[0], y[1], y[2], c0, c1, c2, c3, 0.0, 0.0)
+    third = set_factor(segments, i, 2, z[0], z[1], z[2], 0.0, 0.0, 0.0, p1, 0.0, 0.0)
+    return max(first, second, third)
+
+
+@compiled
+def increments(d, w):
+    """w_{k+1} = ln(d_k^-1 d_{k+1}) from d (segments + 1, 4) into w (segments, 3)."""
+    for k in range(w.shape[0]):
+        w[k, 0], w[k, 1], w[k, 2] = log_between(*quaternion(d, k), *quaternion(d, k + 1))
+
+
+@inlined
+def _following(whole, w, gap):
+    """Jr(2 w)^-1 gap: what w gains when whole = exp(w) is followed by a small turn."""
+    n = squared(w)
+    side = cross(*w, *gap)
+    bend = cross(*w, *side)
+    f = 1.0 / 3.0 + n / 45.0
+    if n > 1e-4:
+        length = math.sqrt(n)
+        f = (1.0 - length * whole[0] / math.sin(length)) / n
+    return (
+        gap[0] + side[0] + f * bend[0],
+        gap[1] + side[1] + f * bend[1],
+        gap[2] + side[2] + f * bend[2],
+    )
+
+
+@compiled
+def tie(d, w):
+    """Bring free increments back onto the controls, d_{k+1} = d_k exp(w_{k+1}), to first order.
+
+    An unfinished solve leaves gaps that would be jumps of the curve; tied, it is C^2 and misses
+    keyframes instead.  Lengths may exceed pi, where the logarithm is on another branch, hence
+    a correction.  Returns the largest gap met.
+    """
+    worst = 0.0
+    for k in range(w.shape[0]):
+        whole = turned(1.0, row(w, k))
+        relative = between(*quaternion(d, k), *quaternion(d, k + 1))
+        gap = small_log(*between(*whole, *relative))
+        worst = max(worst, squared(gap))
+        if squared(gap) > ROUNDING * ROUNDING:
+            x, y, z = _following(whole, row(w, k), gap)
+            w[k, 0] += x
+            w[k, 1] += y
+            w[k, 2] += z
+    return math.sqrt(worst)
+
+
+@inlined
+def _miss(base, turn, q, i, sign):
+    """|vec| squared of (base turn)^-1 q_i; 1 where they are more than half a turn apart."""
+    w, x, y, z = mul(*base, *turn)
+    w, x, y, z = between(w, x, y, z, sign * q[i, 0], sign * q[i, 1], sign * q[i, 2], sign * q[i, 3])
+    return x * x + y * y + z * z if w > 0.0 else 1.0
+
+
+@compiled
+def write_segments(q, h, closed, clamped, sign, d, w, ends, segments):
+    """Constants of (1) from controls d (segments + 1, 4) and the increments w (segments, 3) between
+    them; ends (2, 3) are the increments to the outer controls of a clamped curve.
+
+    Returns (reach, residual): the largest half angle that a sample meets, and the largest miss
+    at a keyframe in rad, taken on both of its sides with the constants that were written.
+    """
+    n = h.size
+    reach = worst = 0.0
+    x = row(ends, 0) if clamped else row(w, n - 1 if closed else 0)
+    if closed:
+        base = (sign * d[n - 1, 0], sign * d[n - 1, 1], sign * d[n - 1, 2], sign * d[n - 1, 3])
+    else:
+        base = mul(*quaternion(d, 0), *turned(-1.0, x))
+    h1, h2, h3 = spacing(h, -1, closed, clamped), h[0], spacing(h, 1, closed, clamped)
+    m0 = weight_before(spacing(h, -2, closed, clamped), h1, h2)
+    y = row(w, 0)
+    turn = mul(*turned(1.0 - m0, x), *turned(weight_after(h1, h2, h3), y))
+    for i in range(n):
+        h4 = spacing(h, i + 2, closed, clamped)
+        m1, p1 = weight_before(h1, h2, h3), weight_after(h2, h3, h4)
+        z = y
+        if i < n - 1 or closed:
+            z = row(w, i + 1 if i < n - 1 else 0)
+        elif clamped:
+            z = row(ends, 1)
+        reach = max(reach, set_segment(segments, i, base, x, y, z, m0, middle(h1, h2, h3, m1), p1))
+        worst = max(worst, _miss(base, turn, q, i, 1.0))
+        whole = mul(*base, *turned(1.0, x))
+        turn = mul(*turned(1.0 - m1, y), *turned(p1, z))
+        last = closed and i == n - 1
+        worst = max(worst, _miss(whole, turn, q, 0 if last else i + 1, sign if last else 1.0))
+        base = quaternion(d, i)
+        h1, h2, h3, m0, x, y = h2, h3, h4, m1, y, z
+    return reach, 2.0 * math.asin(min(1.0, math.sqrt(worst)))
+
+
+@inlined
+def end_velocity(q, h, at_end):
+    """Chart estimate of q^-1 q' at an end of an open curve, from the last WINDOW keyframes.
+
+    v = sum of l_j'(0) ln(q_0^-1 q_j), l_j the Lagrange basis on the times since that end.
+    """
+    n, step, origin = q.shape[0], 1, 0
+    if at_end:
+        step, origin = -1, n - 1
+    count = min(WINDOW, n)
+    vx = vy = vz = 0.0
+    for j in range(1, count):
+        tj = _since(h, origin, step, j)
+        weight = 1.0 / tj
+        for k in range(1, count):
+            if k != j:
+                tk = _since(h, origin, step, k)
+                weight *= tk / (tk - tj)
+        x, y, z = log_between(*quaternion(q, origin), *quaternion(q, origin + step * j))
+        vx += weight * x
+        vy += weight * y
+        vz += weight * z
+    return vx, vy, vz
+
+
+@inlined
+def _since(h, origin, step, j):
+    """Time from the end to its j-th neighbour, negative before the last keyframe."""
+    total = 0.0
+    for k in range(j):
+        total += h[origin + k] if step > 0 else -h[origin - 1 - k]
+    return total

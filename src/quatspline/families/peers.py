@@ -1,0 +1,138 @@
+"""What the wrappers of third-party schemes share: silence, versions, frames, pairs of keyframes.
+
+A wrapper calls the library as its documentation says, on its fastest documented path, and changes
+nothing but the form of numbers: times since the first keyframe, quaternions (m, 4) scalar first, rates
+in the body frame.  Faults stay in: they are measured, by version.
+"""
+
+from __future__ import annotations
+
+import importlib.metadata
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+
+from quatspline import quaternion
+from quatspline.curve import Curve
+from quatspline.keyframes import Keyframes
+from quatspline.quaternion import FloatArray
+
+
+def peer_version(scheme: type[Curve]) -> str | None:
+    """The installed version of the distribution that a scheme wraps; None for our own schemes."""
+    return None if scheme.peer is None else importlib.metadata.version(scheme.peer)
+
+
+@contextmanager
+def quiet() -> Iterator[None]:
+    """No warning leaks from what runs inside: a peer's warnings are not its caller's business."""
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore")
+        yield
+
+
+class PeerCurve(Curve):
+    """A curve that a third-party library evaluates; its warnings stay inside."""
+
+    # What a library does not publish (order, support, constant rate) is what we measured.
+    orders = (0,)
+
+    def _build(self, keyframes: Keyframes, given: dict[str, Any]) -> None:
+        with quiet():
+            super()._build(keyframes, given)
+
+    def _evaluate(self, samples: FloatArray, order: int, out: FloatArray, threads: int) -> None:
+        with quiet():
+            super()._evaluate(samples, order, out, threads)
+
+
+def with_return(keyframes: Keyframes) -> FloatArray:
+    """The keyframes (n, 4); closed (n + 1, 4), the first one repeated with the closing sign."""
+    q = keyframes.quaternions
+    return np.concatenate([q, keyframes.sign * q[:1]]) if keyframes.closed else q
+
+
+def pairs(knots: FloatArray, t: FloatArray) -> tuple[Any, FloatArray]:
+    """Segment and local parameter of each time, for libraries that interpolate between two."""
+    segment = np.clip(np.searchsorted(knots, t, side="right") - 1, 0, len(knots) - 2)
+    return segment, (t - knots[segment]) / (knots[segment + 1] - knots[segment])
+
+
+def reflected(keyframes: Keyframes) -> tuple[FloatArray, FloatArray]:
+    """Keyframes (n + 2, 4) and times (n + 3,) that put the wrap of an always closed library outside.
+
+    Both ends get a reflected phantom, q_{-1} = q_0 q_1^{-1} q_0 at t_{-1} = 2 t_0 - t_1, so that no
+    segment between given keyframes meets the wrap of a curve that four keyframes shape.
+    """
+    q, t = keyframes.quaternions, keyframes.knots
+    before = _mirror(q[0], q[1])
+    after = _mirror(q[-1], q[-2])
+    last = 2.0 * t[-1] - t[-2]
+    times = np.concatenate([[2.0 * t[0] - t[1]], t, [last, last + t[-1] - t[-2]]])
+    return np.concatenate([before[None], q, after[None]]), times
+
+
+def _mirror(a: FloatArray, b: FloatArray) -> FloatArray:
+    """The point that follows b, a on their great arc at the same step: a b^-1 a."""
+    return quaternion.mul(quaternion.mul(a, quaternion.conj(b)), a)
+
+
+def body_frame(q: FloatArray, rates: FloatArray) -> FloatArray:
+    """World rates (m, 3) at orientations q (m, 4), seen from the body.
+
+    The same turn serves acceleration: the frame's own turning drops out because omega x omega = 0.
+    """
+    return quaternion.rotate(quaternion.conj(q), rates)
+
+
+def unit_quaternions(q: FloatArray) -> list[Any]:
+    """Rows (w, x, y, z) as quaternions of the package `splines`."""
+    from splines.quaternion import UnitQuaternion
+
+    return [UnitQuaternion.from_unit_xyzw((x, y, z, w)) for w, x, y, z in q.tolist()]
+
+
+def rows(quaternions: Any, first: FloatArray) -> FloatArray:
+    """Quaternions of `splines` as rows (m, 4), in the sign of our first keyframe.
+
+    The package flips a first keyframe with negative scalar part ("canonicalized").
+    """
+    sign = -1.0 if first[0] < 0.0 else 1.0
+    return sign * np.array([q.wxyz for q in quaternions], dtype=float).reshape(-1, 4)
+
+
+class InterpolatePyCurve(PeerCurve):
+    """What the curves of InterpolatePy share: one call a sample, rates in the world frame."""
+
+    peer = "InterpolatePy"
+    reference = "interpolatepy"
+    closable = False
+    orders = (0, 1, 2)
+
+    def _construct(self, curve: type, *arguments: Any) -> None:
+        """Call a class of the library; some flip all signs, so ours is read off the first key."""
+        from interpolatepy import Quaternion
+
+        keyframes = self._keyframes
+        q = [Quaternion(*row) for row in keyframes.quaternions.tolist()]
+        self.curve = curve(keyframes.knots.tolist(), q, *arguments)
+        self.sign = 1.0
+        first = self._orientation(keyframes.knots[:1])[0]
+        self.sign = -1.0 if first @ keyframes.quaternions[0] < 0.0 else 1.0
+
+    def _orientation(self, t: FloatArray) -> FloatArray:
+        q = [(p.w, p.x, p.y, p.z) for p in map(self.curve.evaluate, t.tolist())]
+        return self.sign * np.array(q, dtype=float).reshape(-1, 4)
+
+    def _velocity(self, t: FloatArray) -> FloatArray:
+        return self._rates(self.curve.evaluate_velocity, t)
+
+    def _acceleration(self, t: FloatArray) -> FloatArray:
+        return self._rates(self.curve.evaluate_acceleration, t)
+
+    def _rates(self, evaluate: Any, t: FloatArray) -> FloatArray:
+        world = np.array([evaluate(x) for x in t.tolist()], dtype=float).reshape(-1, 3)
+        return body_frame(self._orientation(t), world)

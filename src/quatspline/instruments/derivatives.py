@@ -1,0 +1,37 @@
+"""Derivatives of any curve, peers included: its own where it has them, otherwise the numerical ones."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from quatspline import numeric
+from quatspline.curve import Curve
+from quatspline.quaternion import FloatArray
+
+ONE_SIDED = 4
+"""Points of the one-sided extrapolation to a knot: exact for cubics."""
+
+_LIMIT = np.array([4.0, -6.0, 4.0, -1.0])
+_SLOPE = np.array([-13.0 / 3.0, 19.0 / 2.0, -7.0, 11.0 / 6.0])
+"""Weights of values at h, 2h, 3h, 4h for the value and for h times the slope at 0."""
+
+
+def derivative(curve: Curve, t: FloatArray, order: int) -> FloatArray:
+    """Orders 0, 1, 2 of a single-track curve at t (m,) in its domain: (m, 4) or (m, 3)."""
+    if order in curve.orders:
+        return curve(t, order)
+    since, _ = curve._wrapped(np.asarray(t, dtype=float))
+    rates = numeric.rates(curve._orientation, since, curve.keyframes.knots)
+    return rates[order - 1]
+
+
+def one_sided(curve: Curve, at: FloatArray, step: FloatArray, side: int, order: int) -> FloatArray:
+    """Limits (m, width) of a derivative at knots ``at`` (m,), from one side (+1 or -1).
+
+    Values at 1 to 4 steps (m,) away are extrapolated; order 3 is the slope of order 2.
+    """
+    nodes = at[:, None] + side * step[:, None] * np.arange(1.0, ONE_SIDED + 1)
+    inner = derivative(curve, nodes.reshape(-1), min(order, 2)).reshape(*nodes.shape, -1)
+    if order < 3:
+        return np.einsum("j,mji->mi", _LIMIT, inner)
+    return np.einsum("j,mji->mi", _SLOPE, inner) / (side * step[:, None])

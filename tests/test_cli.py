@@ -1,0 +1,598 @@
+"""The command line, as a process; experiments come from a folder of their own."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import quatspline
+from quatspline import cli, registry, running
+from quatspline.trajectories import files
+
+Finished = subprocess.CompletedProcess[str]
+
+SCHEME = '''
+import numpy as np
+from quatspline import ConvergenceError, SolveReport
+from quatspline.curve import Curve
+
+class Stairs(Curve):
+    """The last keyframe before t: no compilation, no solve."""
+    title, reference, continuity, order, support = "Stairs", "none", 0, 0, 1
+    constant_rate = "no"
+    def _fit(self, keyframes):
+        {fit}
+    def _orientation(self, t):
+        knots = self._keyframes.knots[: self._keyframes.count]
+        return self._keyframes.quaternions[np.searchsorted(knots, t, side="right") - 1]
+'''
+FAILING = 'self._conclude(SolveReport("jacobi", "residual", 9, 0.1, 0.2, False, 1e-6))'
+
+EXPERIMENT = """
+import pandas as pd
+from matplotlib.figure import Figure
+TITLE, PAPER, NOTE = "{title}", {paper}, "As ever."
+def measure(run):
+    {before}
+    names = run.schemes or ["b", "a"]
+    return pd.DataFrame({{"scheme": names, "x": run.rng("x").random(len(names))}})
+"""
+
+FIGURE = """
+def draw(table):
+    figure = Figure()
+    figure.subplots().plot(table["x"])
+    return figure
+def caption(table):
+    return f"{len(table)} rows, from {table['scheme'][0]}."
+"""
+
+
+class Desk:
+    """A folder with schemes, experiments and keyframes, and the command run in it."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        for name in ("schemes", "experiments"):
+            (folder / name).mkdir()
+        self.environment = os.environ | {
+            "QUATSPLINE_EXPERIMENTS": str(folder / "experiments"),
+            "QUATSPLINE_BASELINES": str(folder / "schemes"),
+            "PYTHONPATH": str(registry.PACKAGE.parent),
+            "PYTHONDONTWRITEBYTECODE": "1",
+        }
+
+    def scheme(self, name: str, fit: str = "pass") -> None:
+        (self.folder / "schemes" / f"{name}.py").write_text(SCHEME.format(fit=fit))
+
+    def experiment(self, name: str, before: str = "pass", **more: bool) -> None:
+        """Write an experiment; more: paper=True, figure=False (which spares a slow import)."""
+        paper, figure = more.get("paper", False), more.get("figure", True)
+        text = EXPERIMENT.format(title=f"The {name}", paper=paper, before=before)
+        path = self.folder / "experiments" / f"{name}.py"
+        path.write_text(text + (FIGURE if figure else ""))
+
+    def keyframes(self, name: str = "k.csv", text: str = "0,1,0,0,0\n1,0.8,0.6,0,0\n") -> Path:
+        path = self.folder / name
+        path.write_text(text)
+        return path
+
+    def command(self, *arguments: object) -> list[str]:
+        return [sys.executable, "-m", "quatspline", *map(str, arguments)]
+
+    def __call__(self, *arguments: object) -> Finished:
+        return subprocess.run(
+            self.command(*arguments),
+            cwd=self.folder,
+            env=self.environment,
+            capture_output=True,
+            text=True,
+        )
+
+    def counted(self, name: str) -> int:
+        path = self.folder / f"{name}.count"
+        return len(path.read_text()) if path.exists() else 0
+
+    def manifest(self) -> dict:
+        return json.loads((self.folder / "results" / "manifest.json").read_text())
+
+
+def count(name: str) -> str:
+    """Source that notes in a file that the experiment was measured once more."""
+    return f'open("{name}.count", "a").write(".")'
+
+
+@pytest.fixture
+def desk(tmp_path: Path) -> Desk:
+    return Desk(tmp_path)
+
+
+def refused(done: Finished, status: int = 2) -> str:
+    assert done.returncode == status, done.stderr
+    assert done.stderr.count("\n") == 1
+    assert "Traceback" not in done.stderr
+    return done.stderr.rstrip("\n")
+
+
+# -- usage --------------------------------------------------------------------------------------
+
+
+def test_help_and_version(desk: Desk) -> None:
+    assert desk("--version").stdout == f"quatspline {quatspline.__version__}\n"
+    shown = desk("--help")
+    assert shown.returncode == 0
+    assert {"list", "run", "sample"} <= set(shown.stdout.split())
+
+
+def test_help_imports_nothing_slow(desk: Desk) -> None:
+    script = (
+        "import sys; from quatspline.cli import main; assert main(['--help']) == 0;"
+        "slow = {'numpy', 'numba', 'scipy', 'pandas', 'matplotlib'} & set(sys.modules);"
+        "assert not slow, slow"
+    )
+    command = [sys.executable, "-c", script]
+    assert subprocess.run(command, env=desk.environment, capture_output=True).returncode == 0
+
+
+def test_list_imports_no_table_no_figure(desk: Desk) -> None:
+    script = (
+        "import sys; from quatspline.cli import main; assert main(['list']) == 0;"
+        "slow = {'pandas', 'matplotlib', 'tqdm'} & set(sys.modules); assert not slow, slow"
+    )
+    command = [sys.executable, "-c", script]
+    done = subprocess.run(command, env=desk.environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "what"),
+    [
+        ([], "the following arguments are required: COMMAND"),
+        (["lisst"], "invalid choice: 'lisst'"),
+        (["list", "--all"], "unrecognized arguments: --all"),
+        (["run", "--quick", "--full"], "not allowed with argument"),
+        (["run", "--seed", "-1"], "argument --seed: '-1': a whole number, at least 0, is expected"),
+        (["run", "missing"], "unknown experiment 'missing'"),
+        (["run", "erors"], "unknown experiment 'erors': did you mean 'errors'?"),
+        (["run", "errors", "--schemes", "quartik"], "did you mean 'quartic'?"),
+        (["run", "errors", "--schemes", "broken"], "scheme 'broken' cannot be used"),
+        (["run", "errors", "--out", "k.csv"], "no such folder can be made"),
+        (["sample", "k.csv", "--scheme", "stairs"], "one of the arguments --rate --count"),
+        (["sample", "k.csv", "--rate", "2"], "required: --scheme"),
+        (["sample", "k.csv", "--scheme", "stares", "--count", "2"], "did you mean 'stairs'?"),
+        (["sample", "k.csv", "--scheme", "stairs", "--count", "0"], "at least 1, is expected"),
+        (["sample", "k.csv", "--scheme", "stairs", "--rate", "nan"], "a positive number is"),
+        (["sample", "k.csv", "--scheme", "stairs", "--rate", "fast"], "'fast': a positive number"),
+        (["sample", "k.csv", "--scheme", "stairs", "--rate", "1e308"], "samples are too many"),
+        (["sample", "k.csv", "--scheme", "stairs", "--count", "10000000000"], "are too many"),
+        (["sample", "no.csv", "--scheme", "stairs", "--count", "2"], "no.csv: cannot be read"),
+        (
+            ["sample", "bad.csv", "--scheme", "stairs", "--count", "2"],
+            "bad.csv, line 2: expected 5",
+        ),
+        (["sample", "one.csv", "--scheme", "stairs", "--count", "2"], "at least 2 are needed"),
+        (["sample", "k.csv", "--scheme", "stairs", "--count", "2", "-o", "x.png"], "suffix '.png'"),
+        (["sample", "k.csv", "--scheme", "stairs", "--count", "2", "-o", "n/x.csv"], "be written"),
+        (["sample", "uneven.csv", "--scheme", "stairs", "--count", "2", "--closed"], "last row"),
+    ],
+)
+def test_bad_usage_and_bad_input_are_told_in_one_line(
+    desk: Desk,
+    arguments: list[str],
+    what: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(desk.folder)
+    for name in ("QUATSPLINE_EXPERIMENTS", "QUATSPLINE_BASELINES"):
+        monkeypatch.setenv(name, desk.environment[name])
+    desk.experiment("errors")
+    desk.scheme("stairs")
+    (desk.folder / "schemes" / "broken.py").write_text("import nothing_of_this_name")
+    desk.keyframes()
+    desk.keyframes("bad.csv", "0,1,0,0,0\n1,1,0\n")
+    desk.keyframes("one.csv", "0,1,0,0,0\n")
+    desk.keyframes("uneven.csv", "0,1,0,0,0\n1,0.8,0.6,0,0\n5,0.6,0.8,0,0\n")
+    status = cli.main(arguments)  # in this process: there are many, and others are processes
+    output = capsys.readouterr()
+    assert what in refused(subprocess.CompletedProcess(arguments, status, *output))
+    assert output.out == ""
+
+
+def test_every_malformed_line_is_told(desk: Desk) -> None:
+    desk.scheme("stairs")
+    for line in ("1,1,0,0", "1,a,0,0,0", "1,nan,0,0,0", "1,2,0,0,0", "0,1,0,0,0"):
+        path = desk.keyframes("k.csv", f"t,qw,qx,qy,qz\n0,1,0,0,0\n{line}\n")
+        done = desk("sample", path, "--scheme", "stairs", "--count", 3)
+        assert refused(done).startswith(f"quatspline: {path}, line 3: ")
+        assert done.stdout == ""
+
+
+# -- list ---------------------------------------------------------------------------------------
+
+
+def test_list_shows_claims_and_the_unusable_with_reason(desk: Desk) -> None:
+    desk.scheme("stairs")
+    (desk.folder / "schemes" / "broken.py").write_text("import nothing_of_this_name")
+    (desk.folder / "schemes" / "far_peer.py").write_text(
+        SCHEME.format(fit="pass").replace(
+            "    constant", '    peer = "no-such-thing"\n    constant'
+        )
+    )
+    done = desk("list")
+    assert done.returncode == 0
+    lines = {line.split()[0]: line for line in done.stdout.splitlines()}
+    assert lines["quartic"].split()[1:4] == ["C2", "yes", "2"]
+    assert lines["stairs"].endswith("Stairs")
+    assert "n/a: ModuleNotFoundError: No module named 'nothing_of_this_name'" in lines["broken"]
+    assert "n/a: no-such-thing is not installed" in lines["far-peer"]
+
+
+def test_a_scheme_without_a_claim_does_not_stop_the_list(desk: Desk) -> None:
+    desk.scheme("stairs")
+    path = desk.folder / "schemes" / "stairs.py"
+    path.write_text(path.read_text().replace('constant_rate = "no"', "pass"))
+    assert (
+        "?" in next(x for x in desk("list").stdout.splitlines() if x.startswith("stairs")).split()
+    )
+
+
+def test_a_reader_that_stops_early_is_no_error(desk: Desk) -> None:
+    desk.scheme("stairs")
+    desk.keyframes()
+    command = desk.command("sample", "k.csv", "--scheme", "stairs", "--count", 300_000)
+    pipe = subprocess.PIPE
+    with subprocess.Popen(
+        command, cwd=desk.folder, env=desk.environment, stdout=pipe, stderr=pipe, text=True
+    ) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        assert process.stdout.readline() == "t,qw,qx,qy,qz\n"
+        process.stdout.close()
+        assert process.stderr.read() == ""
+    assert process.returncode == 0
+
+
+# -- sample -------------------------------------------------------------------------------------
+
+
+def test_sample_writes_csv_to_stdout(desk: Desk) -> None:
+    desk.scheme("stairs")
+    done = desk("sample", desk.keyframes(), "--scheme", "stairs", "--rate", 2)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == (
+        "t,qw,qx,qy,qz\n0.0,1.0,0.0,0.0,0.0\n0.5,1.0,0.0,0.0,0.0\n1.0,0.8,0.6,0.0,0.0\n"
+    )
+
+
+def test_sample_evaluates_the_scheme(desk: Desk) -> None:
+    q = np.array([[1, 0, 0, 0], [0.8, 0.6, 0, 0], [0.6, 0, 0.8, 0]])
+    np.savez(desk.folder / "k.npz", times=[0.0, 1.0, 2.5], quaternions=q)
+    done = desk("sample", "k.npz", "--scheme", "quartic", "--count", 11, "-o", "out.npz")
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == ""
+    samples = files.read(desk.folder / "out.npz")
+    expected = quatspline.build("quartic", [0.0, 1.0, 2.5], q)(samples.times)
+    np.testing.assert_array_equal(samples.times, np.linspace(0.0, 2.5, 11))
+    np.testing.assert_array_equal(samples.quaternions, expected)
+
+
+def test_sample_carries_positions_to_tum(desk: Desk) -> None:
+    desk.scheme("stairs")
+    tum = desk.keyframes("k.tum", "5 0 0 0 0 0 0 1\n7 4 2 0 0.6 0 0 0.8\n")
+    assert desk("sample", tum, "--scheme", "stairs", "--count", 5, "-o", "a.tum").returncode == 0
+    assert desk("sample", tum, "--scheme", "stairs", "--count", 5, "-o", "b.csv").returncode == 0
+    assert (
+        desk("sample", "b.csv", "--scheme", "stairs", "--count", 5, "-o", "c.txt").returncode == 0
+    )
+    np.testing.assert_allclose(files.read(desk.folder / "a.tum").positions[:, 0], [0, 1, 2, 3, 4])
+    np.testing.assert_array_equal(files.read(desk.folder / "c.txt").positions, np.zeros((5, 3)))
+
+
+def test_sample_of_a_closed_curve_returns(desk: Desk) -> None:
+    desk.scheme("stairs")
+    rows = "0,1,0,0,0\n1,0.8,0.6,0,0\n2,0.6,0.8,0,0\n"
+    done = desk(
+        "sample", desk.keyframes("k.csv", rows), "--scheme", "stairs", "--rate", 1, "--closed"
+    )
+    assert done.stdout.splitlines()[-1] == "3.0,1.0,0.0,0.0,0.0"
+    repeated = desk.keyframes("r.csv", f"{rows}5,-1,0,0,0\n")
+    done = desk("sample", repeated, "--scheme", "stairs", "--count", 2, "--closed")
+    assert done.stdout.splitlines()[-1] == "5.0,1.0,0.0,0.0,0.0"
+
+
+def test_a_solve_that_does_not_converge_is_one_line_and_status_1(desk: Desk) -> None:
+    desk.scheme("stairs", fit=FAILING)
+    done = desk("sample", desk.keyframes(), "--scheme", "stairs", "--count", 2)
+    assert "ConvergenceError: stairs (jacobi) did not converge" in refused(done, status=1)
+
+
+def test_what_nobody_foresaw_is_status_1_with_its_traceback(desk: Desk) -> None:
+    desk.scheme("stairs", fit="raise ZeroDivisionError('oops')")
+    done = desk("sample", desk.keyframes(), "--scheme", "stairs", "--count", 2)
+    assert done.returncode == 1
+    assert done.stderr.endswith("quatspline: ZeroDivisionError: oops\n")
+
+
+@pytest.mark.parametrize(
+    ("first", "last", "rate", "expected"),
+    [
+        (0.0, 1.0, 4.0, [0, 0.25, 0.5, 0.75, 1]),
+        (0.0, 0.29, 100.0, np.arange(30) / 100),  # 0.29 * 100 is 28.999999999999996
+        (0.0, 1.0, 0.7, [0]),
+        (1e9, 1e9 + 0.3, 10.0, 1e9 + np.arange(4) / 10),
+        (-1.0, 0.05, 10.0, -1 + np.arange(11) / 10),
+    ],
+)
+def test_rate_samples_from_the_start_to_the_end_where_it_lands(
+    first: float, last: float, rate: float, expected: np.ndarray
+) -> None:
+    times = cli._grid(first, last, rate, None)
+    np.testing.assert_allclose(times, expected, rtol=0, atol=4 * np.spacing(abs(first) + 1.0))
+    assert times.max() <= last
+
+
+def test_count_samples_both_ends() -> None:
+    np.testing.assert_array_equal(cli._grid(2.0, 4.0, None, 3), [2, 3, 4])
+    np.testing.assert_array_equal(cli._grid(2.0, 4.0, None, 1), [2])
+
+
+# -- run ----------------------------------------------------------------------------------------
+
+
+def outputs(name: str) -> set[str]:
+    return {f"{name}{end}" for end in (".csv", ".md", ".png", ".svg", ".caption.txt")}
+
+
+def test_run_writes_everything(desk: Desk) -> None:
+    desk.experiment("first_errors")
+    done = desk("run", "first-errors", "--seed", 3, "--schemes", "slerp,quartic")
+    assert done.returncode == 0, done.stderr
+    folder = desk.folder / "results"
+    assert set(os.listdir(folder)) == outputs("first-errors") | {"manifest.json"}
+    assert (
+        (folder / "first-errors.md")
+        .read_text()
+        .startswith("# The first_errors\n\nAs ever. Size: quick; seed 3.\n\n| ")
+    )
+    assert (folder / "first-errors.caption.txt").read_text() == "2 rows, from quartic.\n"
+    manifest = desk.manifest()
+    assert manifest["command"][1:] == [
+        "run",
+        "first-errors",
+        "--seed",
+        "3",
+        "--schemes",
+        "slerp,quartic",
+    ]
+    assert manifest["seeds"] == {"seed": 3}
+    assert set(manifest["files"]) == outputs("first-errors")
+    assert manifest["end"] is not None
+
+
+def test_two_runs_with_one_seed_write_the_same_bytes(desk: Desk) -> None:
+    desk.experiment("errors")
+    for out, seed in (("one", 1), ("two", 1), ("three", 2)):
+        assert desk("run", "errors", "--out", out, "--seed", seed).returncode == 0
+    for file in outputs("errors"):
+        one, two = ((desk.folder / out / file).read_bytes() for out in ("one", "two"))
+        assert one == two, file
+    three = (desk.folder / "three" / "errors.csv").read_bytes()
+    assert three != (desk.folder / "two" / "errors.csv").read_bytes()
+
+
+def test_the_figure_is_drawn_from_the_file_alone(desk: Desk) -> None:
+    desk.experiment("errors")
+    path = desk.folder / "experiments" / "errors.py"
+    check = "def draw(table):\n    assert list(table['scheme']) == ['a', 'b'], 'as measured'\n"
+    path.write_text(path.read_text().replace("def draw(table):\n", check))
+    assert desk("run", "errors").returncode == 0  # measured as b, a; sorted in the file
+
+
+@pytest.mark.parametrize(
+    ("option", "sizes"),
+    [
+        ([], {"paper": "full", "other": "quick"}),
+        (["--quick"], {"paper": "quick", "other": "quick"}),
+        (["--full"], {"paper": "full", "other": "full"}),
+    ],
+)
+def test_sizes(desk: Desk, option: list[str], sizes: dict[str, str]) -> None:
+    note = 'open("sizes", "a").write(f"{TITLE} {run.quick}\\n")'
+    desk.experiment("paper", note, paper=True, figure=False)
+    desk.experiment("other", note, figure=False)
+    assert desk("run", "other", "paper", *option).returncode == 0
+    assert desk.manifest()["sizes"] == sizes
+    said = {"The paper": sizes["paper"] == "quick", "The other": sizes["other"] == "quick"}
+    lines = (desk.folder / "sizes").read_text().splitlines()
+    assert lines == [f"The other {said['The other']}", f"The paper {said['The paper']}"]
+
+
+def test_without_names_all_run_and_the_papers_first(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    desk.experiment("a")
+    desk.experiment("z", paper=True)
+    (desk.folder / "experiments" / "_shared.py").write_text("raise RuntimeError")
+    monkeypatch.setenv("QUATSPLINE_EXPERIMENTS", str(desk.folder / "experiments"))
+    names = [e.name for e in running.experiments()]
+    assert {"a", "z"} <= set(names)
+    assert names.index("z") < names.index("a")
+    assert [e.name for e in running.experiments(["a", "z", "a"])] == ["a", "z"]
+
+
+def test_two_experiments_of_one_name_are_refused(desk: Desk) -> None:
+    (desk.folder / "more").mkdir()
+    desk.experiment("a")
+    (desk.folder / "more" / "a.py").write_text("")
+    both = os.pathsep.join(str(desk.folder / name) for name in ("experiments", "more"))
+    desk.environment["QUATSPLINE_EXPERIMENTS"] = both
+    assert "two experiments are called 'a'" in refused(desk("run", "a"))
+
+
+@pytest.mark.parametrize(
+    ("broken", "reason", "left"),
+    [
+        ("measure", "ZeroDivisionError: division by zero (bad.py:6)", set()),
+        ("load", "ModuleNotFoundError: No module named 'nothing_of_this_name'", set()),
+        ("draw", "KeyError: 'y'", {"bad.csv", "bad.md", "bad.caption.txt"}),
+        ("nothing", "TypeError: no function measure(run) in the file", set()),
+        ("empty", "TypeError: measure returned an empty table", set()),
+    ],
+)
+def test_a_failing_experiment_is_told_and_the_rest_run(
+    desk: Desk, broken: str, reason: str, left: set[str]
+) -> None:
+    desk.experiment("bad")
+    desk.experiment("good")
+    assert desk("run", "bad").returncode == 0  # its files must not pass for those of a later run
+    path = desk.folder / "experiments" / "bad.py"
+    text = path.read_text()
+    path.write_text(
+        {
+            "measure": text.replace("    pass\n", "    1 / 0\n"),
+            "load": "import nothing_of_this_name\n",
+            "draw": text.replace('plot(table["x"])', 'plot(table["y"])'),
+            "nothing": "TITLE = 'x'\n",
+            "empty": text.replace("    pass\n", "    return pd.DataFrame()\n"),
+        }[broken]
+    )
+    done = desk("run", "bad", "good")
+    assert done.returncode == 1
+    failures = [line for line in done.stderr.splitlines() if "failed" in line]
+    assert len(failures) == 1
+    assert failures[0].startswith(f"bad: failed: {reason}")
+    assert "Traceback" not in done.stderr
+    found = set(os.listdir(desk.folder / "results"))
+    assert found == left | {"bad.error.txt", "manifest.json"} | outputs("good")
+    assert "Traceback" in (desk.folder / "results" / "bad.error.txt").read_text()
+    assert desk.manifest()["experiments"]["bad"]["failure"].startswith(reason)
+    assert desk.manifest()["experiments"]["good"]["failure"] is None
+
+
+# -- interruption -------------------------------------------------------------------------------
+
+STOP_ONCE = f"""import os
+    stop = not os.path.exists("second.count")
+    {count("second")}
+    if stop:
+        raise KeyboardInterrupt"""
+
+
+def interrupted(desk: Desk) -> None:
+    """A run of which the first experiment finished and the second was stopped."""
+    desk.experiment("first", count("first"), figure=False)
+    desk.experiment("second", STOP_ONCE, figure=False)
+    done = desk("run", "first", "second")
+    assert done.returncode == 130
+    assert done.stderr.splitlines()[1:] == [
+        "quatspline: interrupted: the same command goes on where it stopped"
+    ]
+    assert (desk.folder / "results" / ".journal.json").is_file()
+    assert desk.manifest()["end"] is None
+    assert (desk.counted("first"), desk.counted("second")) == (1, 1)
+
+
+def test_an_interrupted_run_goes_on_where_it_stopped(desk: Desk) -> None:
+    interrupted(desk)
+    before = (desk.folder / "results" / "first.csv").read_bytes()
+    done = desk("run", "first", "second")
+    assert done.returncode == 0, done.stderr
+    assert "first: kept as finished by the interrupted run" in done.stderr
+    assert (desk.counted("first"), desk.counted("second")) == (1, 2)
+    assert (desk.folder / "results" / "first.csv").read_bytes() == before
+    tables = {f"{name}.{end}" for name in ("first", "second") for end in ("csv", "md")}
+    assert set(desk.manifest()["files"]) == tables
+    assert set(desk.manifest()["sizes"]) == {"first", "second"}
+    assert not (desk.folder / "results" / ".journal.json").exists()
+
+
+def test_a_complete_run_is_not_skipped(desk: Desk) -> None:
+    interrupted(desk)
+    for _ in range(2):
+        assert desk("run", "first", "second").returncode == 0
+    assert (desk.counted("first"), desk.counted("second")) == (2, 3)
+
+
+@pytest.mark.parametrize("change", ["seed", "size", "schemes", "source", "file", "lost"])
+def test_whatever_changed_is_measured_again(desk: Desk, change: str) -> None:
+    interrupted(desk)
+    path = desk.folder / "experiments" / "first.py"
+    if change == "source":
+        path.write_text(path.read_text() + "# edited\n")
+    if change == "file":
+        (desk.folder / "results" / "first.csv").write_text("edited")
+    if change == "lost":
+        (desk.folder / "results" / "first.md").unlink()
+    options = {"seed": ["--seed", "1"], "size": ["--full"], "schemes": ["--schemes", "quartic"]}
+    done = desk("run", "first", "second", *options.get(change, []))
+    assert done.returncode == 0, done.stderr
+    assert desk.counted("first") == 2
+
+
+def test_a_killed_run_goes_on_too(desk: Desk) -> None:
+    desk.experiment("first", count("first"), figure=False)
+    wait = 'import os, time; old = os.path.exists("second.count"); '
+    desk.experiment("second", f"{wait}{count('second')}; old or time.sleep(600)", figure=False)
+    command = desk.command("run", "first", "second")
+    with subprocess.Popen(
+        command, cwd=desk.folder, env=desk.environment, stderr=subprocess.DEVNULL
+    ) as process:
+        wait_until(lambda: desk.counted("second") == 1 or process.poll() is not None)
+        process.send_signal(signal.SIGKILL)
+    assert process.returncode == -signal.SIGKILL
+    assert desk("run", "first", "second").returncode == 0
+    assert (desk.counted("first"), desk.counted("second")) == (1, 2)
+
+
+def wait_until(condition: Callable[[], bool]) -> None:
+    while not condition():
+        time.sleep(0.01)
+
+
+# -- what experiments are given -----------------------------------------------------------------
+
+
+def test_random_numbers_depend_on_seed_and_names_alone() -> None:
+    run = running.Run(quick=True, seed=5)
+    first = run.rng("case", 3).random(4)
+    run.rng("other").random(100)
+    np.testing.assert_array_equal(run.rng("case", 3).random(4), first)
+    for other in (run.rng("case", 4), run.rng("case3"), running.Run(quick=True).rng("case", 3)):
+        assert not np.array_equal(other.random(4), first)
+
+
+def test_progress_hands_on_the_items_and_says_nothing_when_quick(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    run = running.Run(quick=True)
+    assert list(run.progress(range(3), 3, "cases")) == [0, 1, 2]
+    assert list(run.progress(iter("ab"))) == ["a", "b"]
+    assert capsys.readouterr() == ("", "")
+
+
+def test_progress_shows_what_takes_long(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(running, "PATIENCE", 1e-9)
+    for _ in running.Run(quick=True).progress(range(3), 3, "cases"):
+        time.sleep(0.001)
+    assert "cases" in capsys.readouterr().err
+
+
+def test_a_run_can_be_called_from_python(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    desk.experiment("errors")
+    monkeypatch.setenv("QUATSPLINE_EXPERIMENTS", str(desk.folder / "experiments"))
+    assert running.run(["errors"], out=desk.folder / "out", size="full") == []
+    table = pd.read_csv(desk.folder / "out" / "errors.csv")
+    assert table["scheme"].tolist() == ["a", "b"]
