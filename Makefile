@@ -8,7 +8,7 @@ QUICK ?=
 NAME ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help reproduce benchmark benchmark-speed test lint format new-baseline check-baseline lock clean
+.PHONY: help reproduce benchmark benchmark-speed test lint format new-baseline check-baseline reference lock clean
 
 help: ## Show the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /|/' | awk -F'|' '{printf "  make %-16s %s\n", $$1, $$2}'
@@ -49,6 +49,9 @@ new-baseline: $(VENV)/run ## Write a working template: NAME=my_scheme
 
 check-baseline: $(VENV)/test ## Conformance and claims of one scheme: NAME=my_scheme
 	@$(BIN)/python -m pytest -q tests/test_conformance.py tests/test_claims.py --scheme '$(NAME)'
+
+reference: $(VENV)/run ## Take the tables of the last run as the reference and quote them in the README
+	@$(BIN)/python -m quatspline.report.readme --adopt results
 
 lock: ## Renew requirements.lock from the newest releases
 	@rm -rf $(VENV)-lock && $(PYTHON) -m venv $(VENV)-lock

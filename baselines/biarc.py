@@ -15,6 +15,8 @@ from quatspline.primitives import mul
 
 STILL = 1e-14
 """A velocity below this share of its neighbours' has no direction; a sum below it no bisector."""
+SHORT = 1e-9
+"""An arc with a chord below this share of the step is none: motion turns back on itself there."""
 
 
 class Biarc(SegmentCurve):
@@ -74,8 +76,8 @@ def _tangents(q, h, sign, closed):
 @compiled
 def _joint(q0, t0, q1, t1):
     """(1) and (2)."""
-    gap = combine(1.0, q1, -1.0, q0)
-    a, k, c = 1.0 - dot(t0, t1), dot(t0, q1) - dot(q0, t1), 0.5 * dot(gap, gap)
+    gap, turn = combine(1.0, q1, -1.0, q0), combine(1.0, t1, -1.0, t0)
+    a, k, c = 0.5 * dot(turn, turn), dot(t0, q1) - dot(q0, t1), 0.5 * dot(gap, gap)
     root = math.sqrt(k * k + 4.0 * a * c)
     angle = math.atan2(2.0 * c, k + root) if k >= 0.0 else math.atan2(root - k, 2.0 * a)
     cosine, sine = math.cos(angle), math.sin(angle)
@@ -86,17 +88,20 @@ def _joint(q0, t0, q1, t1):
 
 
 @compiled
-def _arc(p, tangent, end):
+def _arc(p, tangent, end, shortest):
     """The arc from p to end: X, Y of `circles` (1), its angle and its length."""
     chord = combine(1.0, end, -1.0, p)
     ahead, size = dot(chord, tangent), dot(chord, chord)
+    if size <= shortest * shortest:  # a point, not a full circle in a plane made of rounding
+        return tangent, combine(-1.0, p, 0.0, p), 0.0, 0.0
     aside = combine(1.0, chord, -ahead, tangent)
+    aside = combine(1.0, aside, -dot(aside, tangent), tangent)  # twice is orthogonal to rounding
     # curvature vector c = 2 aside / |chord|^2; its part along p is -1 on the sphere, whatever rounding says
-    k = 2.0 / size if size > 0.0 else 0.0
+    k = 2.0 / size
     c = combine(k, aside, -1.0 - k * dot(aside, p), p)
     bend = math.sqrt(dot(c, c))
-    angle = 2.0 * math.atan2(0.5 * size * bend, ahead) if size > 0.0 else 0.0
     r = 1.0 / bend
+    angle = 2.0 * math.atan2(0.5 * size * bend, ahead)
     return combine(r, tangent, 0.0, p), combine(r * r, c, 0.0, p), angle, r * angle
 
 
@@ -109,8 +114,10 @@ def FIT(q, h, closed, sign, parameters, segments, report):
         t0, t1 = keyframe(tangents, i, sign), keyframe(tangents, i + 1, sign)
         joint = _joint(q0, t0, q1, t1)
         back = combine(-1.0, t1, 0.0, t1)
-        x0, y0, angle0, length0 = _arc(q0, t0, joint)
-        x1, y1, angle1, length1 = _arc(q1, back, joint)
+        gap = combine(1.0, q1, -1.0, q0)
+        shortest = SHORT * math.sqrt(dot(gap, gap)) + STILL
+        x0, y0, angle0, length0 = _arc(q0, t0, joint, shortest)
+        x1, y1, angle1, length1 = _arc(q1, back, joint, shortest)
         total = length0 + length1
         split = length0 / total if total > 0.0 else 0.5
         k0 = angle0 / split if split > 0.0 else 0.0

@@ -7,7 +7,14 @@ from functools import cache
 import numpy as np
 
 from quatspline._jit import BLOCK, CONSTANTS, ROWS, fit_kernel, inlined, sample_kernel
-from quatspline.families import chords
+from quatspline.families.chords import SIZE as CHORD
+from quatspline.families.chords import (
+    VERSINE,
+    set_acceleration,
+    set_chord,
+    set_point,
+    set_velocity,
+)
 from quatspline.families.segments import Family, SegmentCurve, carray
 from quatspline.families.tangents import keyframe
 from quatspline.keyframes import Keyframes
@@ -18,10 +25,10 @@ from quatspline.options import Count
 GRID, TAIL = 257, 60
 """Points each way, and further terms that stand for the exact f: each less than half the last."""
 
-TERMS, LAST = chords.SIZE, chords.SIZE + 1
-SIZE = chords.SIZE + 2
+TERMS, LAST = CHORD, CHORD + 1
+SIZE = CHORD + 2
 
-_Y = CONSTANTS + chords.VERSINE
+_Y = CONSTANTS + VERSINE
 _F, _G = CONSTANTS + SIZE, CONSTANTS + SIZE + 3
 
 
@@ -56,7 +63,7 @@ def ORIENTATION(sheet, n):
     s = carray(sheet, (ROWS, BLOCK))
     _nest(s, n, 0)
     for j in range(n):
-        chords.set_point(s, j, (1.0 - s[0, j]) * s[_F, j], s[0, j] * s[_G, j])
+        set_point(s, j, (1.0 - s[0, j]) * s[_F, j], s[0, j] * s[_G, j])
 
 
 @sample_kernel
@@ -67,7 +74,7 @@ def VELOCITY(sheet, n):
     for j in range(n):
         u, f, f1, g, g1 = s[0, j], s[_F, j], s[_F + 1, j], s[_G, j], s[_G + 1, j]
         v = 1.0 - u
-        chords.set_velocity(s, j, v * f, v * f1 - f, u * g, u * g1 + g)
+        set_velocity(s, j, v * f, v * f1 - f, u * g, u * g1 + g)
 
 
 @sample_kernel
@@ -79,7 +86,7 @@ def ACCELERATION(sheet, n):
         u, f, f1, f2 = s[0, j], s[_F, j], s[_F + 1, j], s[_F + 2, j]
         g, g1, g2 = s[_G, j], s[_G + 1, j], s[_G + 2, j]
         v = 1.0 - u
-        chords.set_acceleration(
+        set_acceleration(
             s, j, v * f, v * f1 - f, v * f2 - 2.0 * f1, u * g, u * g1 + g, u * g2 + 2.0 * g1
         )
 
@@ -88,7 +95,7 @@ def ACCELERATION(sheet, n):
 def FIT(q, h, closed, sign, parameters, segments, report):
     """The chord from each keyframe to the next; parameters: terms, correction of the last."""
     for i in range(h.size):
-        theta = chords.set_chord(segments, i, keyframe(q, i, sign), keyframe(q, i + 1, sign))
+        theta = set_chord(segments, i, keyframe(q, i, sign), keyframe(q, i + 1, sign))
         segments[i, TERMS] = parameters[0]
         segments[i, LAST] = parameters[1]
         report[3] = max(report[3], theta)

@@ -8,12 +8,11 @@ import numpy as np
 
 from quatspline._jit import fit_kernel, inlined
 from quatspline.families.arcs import ARC, SIZE, set_arc
-from quatspline.families.segments import Family, SegmentCurve, sample
+from quatspline.families.segments import REACH, SegmentCurve, fit_tracks
 from quatspline.families.tangents import keyframe
 from quatspline.keyframes import Keyframes
 from quatspline.options import Count
 from quatspline.primitives import arc_angle, slerp
-from quatspline.quaternion import FloatArray
 
 
 class IncrementalSlerp(SegmentCurve):
@@ -50,28 +49,24 @@ class IncrementalSlerp(SegmentCurve):
 
     def _fit(self, keyframes: Keyframes, *, steps: Count = 64) -> None:
         self.operations = {**type(self).operations, "logs per keyframe": steps + 1}
-        self.family = Family(SIZE * steps, ARC.near, ARC.far)
-        self._solve(FIT, np.array([float(steps)]))
-        # Every step becomes a segment of its own.
-        self.segments = self.segments.reshape(keyframes.tracks.shape[0], -1, SIZE)
-        fine = keyframes.knots[:-1, None] + keyframes.spacings[:, None] / steps * np.arange(steps)
-        self._fine = np.append(fine, keyframes.knots[-1])
-
-    def _sample(self, t: FloatArray, order: int, out: FloatArray) -> int:
-        frames = self._keyframes
-        index: int = sample(
-            self.kernels[order].address,
-            order,
-            self._fine,
-            self.segments,
-            frames.closed,
-            frames.signs,
-            frames.times[0],
-            self._slack,
-            t,
-            out,
+        self.fit_kernel, self.parameters = FIT, np.array([float(steps)])
+        h, tracks = keyframes.spacings, keyframes.tracks
+        segments = np.empty((tracks.shape[0], h.size * steps, SIZE))
+        report = np.zeros((tracks.shape[0], 4))
+        fit_tracks(
+            FIT.address,
+            tracks,
+            h,
+            keyframes.closed,
+            keyframes.signs,
+            self.parameters,
+            segments,
+            report,
         )
-        return index
+        # Every step is a segment of its own.
+        knots = keyframes.knots[:-1, None] + h[:, None] / steps * np.arange(steps)
+        knots = np.append(knots, keyframes.knots[-1])
+        self._set_segments(segments, report[:, REACH].max(), knots)
 
 
 @inlined
@@ -82,7 +77,7 @@ def _unit(p):
 
 @fit_kernel
 def FIT(q, h, closed, sign, parameters, segments, report):
-    """(1) on every segment; the arc of (2) from p_k fills constants 9k ... 9k + 8."""
+    """(1) from every keyframe; the arc of (2) from p_k is a segment."""
     steps = int(parameters[0])
     for i in range(h.size):
         a, b = keyframe(q, i, sign), keyframe(q, i + 1, sign)
@@ -90,9 +85,9 @@ def FIT(q, h, closed, sign, parameters, segments, report):
         b = slerp(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3], 1.0 / steps)
         _, _, cosine = arc_angle(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3])
         k = 2.0 * cosine
-        for j in range(steps):
+        for j in range(i * steps, (i + 1) * steps):
             r = _unit(b)
-            theta = set_arc(segments, i, SIZE * j, p[0], p[1], p[2], p[3], r[0], r[1], r[2], r[3])
+            theta = set_arc(segments, j, 0, p[0], p[1], p[2], p[3], r[0], r[1], r[2], r[3])
             report[3] = max(report[3], theta)
             c = (k * b[0] - a[0], k * b[1] - a[1], k * b[2] - a[2], k * b[3] - a[3])
             a, b, p = b, c, r

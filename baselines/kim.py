@@ -33,12 +33,14 @@ from quatspline.families.block_tridiagonal import (
     workspace,
 )
 from quatspline.families.bspline import (
+    control,
     end_velocity,
+    increment,
     increments,
+    keyframe,
     knot_weights,
-    quaternion,
-    row,
-    set_quaternion,
+    set_control,
+    set_phantoms,
     small_log,
     squared,
     tie,
@@ -60,13 +62,19 @@ FAR = 3.2
 """Squared half angle from which `sinc_near` no longer serves."""
 
 BEFORE, AFTER, WHOLE = 0, 3, 6
-"""Columns of the jets (s, c, b) of m_k w_k, p_k w_{k+1} and w_{k+1} in row k."""
+"""Rows of the jets (s, c, b) of m_k w_k, p_k w_{k+1} and w_{k+1}."""
+
+LOWER, OWN, UPPER, COLUMNS = 0, 9, 18, 64
+"""Rows of a sheet of Newton's blocks, so many columns at a time."""
 
 FAR = 3.2
 """Squared half angle from which `sinc_near` no longer serves."""
 
 BEFORE, AFTER, WHOLE = 0, 3, 6
-"""Columns of the jets (s, c, b) of m_k w_k, p_k w_{k+1} and w_{k+1} in row k."""
+"""Rows of the jets (s, c, b) of m_k w_k, p_k w_{k+1} and w_{k+1}."""
+
+LOWER, OWN, UPPER, COLUMNS = 0, 9, 18, 64
+"""Rows of a sheet of Newton's blocks, so many columns at a time."""
 
 CAP = 0.8
 """Largest half angle by which one Newton update may turn an increment."""
@@ -90,83 +98,107 @@ ROUNDING = 1e-13
 """Misses below this are rounding: there the line search has nothing left to compare."""
 
 
-@compiled
-def far_sinc(z):
-    """`sinc` as a call: rare in the loops below, whose code stays small."""
-    return sinc(z)
-
-
 @inlined
-def set_jet(jets, k, first, z):
-    """(s, c, b) of v with |v|^2 = z: sin|v|/|v|, cos|v|, and (1 - s c)/|v|^2, as Jr(2 v) needs."""
-    if z < FAR:
-        s, c = sinc_near(z)
-    else:
-        s, c = far_sinc(z)
-    b = (1.0 - s * c) / z
-    if z < 1e-3:  # the difference cancels; its series is exact to 1e-12 here
-        b = 2.0 / 3.0 - z * (2.0 / 15.0 - z * (4.0 / 315.0))
-    jets[k, first], jets[k, first + 1], jets[k, first + 2] = s, c, b
+def set_jet(s, c, b, k, z):
+    """sin|v|/|v|, cos|v| and (1 - s c)/|v|^2, of which Jr(2 v) is made, for |v|^2 = z below FAR."""
+    s[k], c[k] = sinc_near(z)
+    # The difference cancels where z is small; its series is exact to 1e-12 there.
+    series = 2.0 / 3.0 - z * (2.0 / 15.0 - z * (4.0 / 315.0))
+    b[k] = series if z < 1e-3 else (1.0 - s[k] * c[k]) / max(z, 1e-3)
+
+
+@compiled
+def far_jet(jets, first, k, z):
+    """`set_jet` for any z."""
+    s, c = sinc(z)
+    jets[first, k], jets[first + 1, k], jets[first + 2, k] = s, c, (1.0 - s * c) / max(z, 1e-3)
+    if z < 1e-3:
+        jets[first + 2, k] = 2.0 / 3.0
 
 
 @compiled
 def set_jets(m, p, w, jets):
-    """Rows (s, c, b) at knot k of m w_k, p w_{k+1} and w_{k+1}: a loop of its own, as its many
-    constants would fill the registers of any other."""
-    n = w.shape[0]
+    """The jets (s, c, b) of m_k w_k, p_k w_{k+1} and w_{k+1} for every knot k, in rows BEFORE,
+    AFTER and WHOLE; loops of few constants and no branch, which vectorise."""
+    n = m.size
+    x, y, z = w[0], w[1], w[2]
+    size = np.empty(n + 1)
+    for j in range(n + 1):
+        size[j] = x[j] * x[j] + y[j] * y[j] + z[j] * z[j]
+    s, c, b = jets[BEFORE], jets[BEFORE + 1], jets[BEFORE + 2]
     for k in range(n):
-        z = squared(row(w, k))
-        set_jet(jets, k + 1, BEFORE, m[k + 1] * m[k + 1] * z)
-        set_jet(jets, k, AFTER, p[k] * p[k] * z)
-        set_jet(jets, k, WHOLE, z)
-    for c in range(3):
-        jets[0, BEFORE + c], jets[n, AFTER + c] = jets[n, BEFORE + c], jets[0, AFTER + c]
+        set_jet(s, c, b, k, m[k] * m[k] * size[k])
+    s, c, b = jets[AFTER], jets[AFTER + 1], jets[AFTER + 2]
+    for k in range(n):
+        set_jet(s, c, b, k, p[k] * p[k] * size[k + 1])
+    s, c, b = jets[WHOLE], jets[WHOLE + 1], jets[WHOLE + 2]
+    for k in range(n):
+        set_jet(s, c, b, k, size[k + 1])
+    for j in range(n + 1):
+        if not size[j] < FAR:
+            if j < n:
+                far_jet(jets, BEFORE, j, m[j] * m[j] * size[j])
+            if j > 0:
+                far_jet(jets, AFTER, j - 1, p[j - 1] * p[j - 1] * size[j])
+                far_jet(jets, WHOLE, j - 1, size[j])
 
 
 @compiled
-def look(problem, w, d, old, jets, misses):
-    """Misses of (2) at w, in the frames of d_{k+1}: ln(exp(-w_{k+1}) d_k^-1 d_{k+1}) with (1).
+def set_controls(m, p, w, jets, targets, d):
+    """(1): d_k = q_k K_k^-1 with K_k^-1 = exp(-p_k w_{k+1}) exp(m_k w_k)."""
+    x, y, z = w[0], w[1], w[2]
+    s, c, t, e = jets[BEFORE], jets[BEFORE + 1], jets[AFTER], jets[AFTER + 1]
+    q0, q1, q2, q3 = targets[0], targets[1], targets[2], targets[3]
+    d0, d1, d2, d3 = d[0], d[1], d[2], d[3]
+    for k in range(m.size):
+        f, g = m[k] * s[k], -p[k] * t[k]
+        after = (e[k], g * x[k + 1], g * y[k + 1], g * z[k + 1])
+        turn = mul(*after, c[k], f * x[k], f * y[k], f * z[k])
+        d0[k], d1[k], d2[k], d3[k] = mul(q0[k], q1[k], q2[k], q3[k], *turn)
 
-    Returns the sum of their squares, the largest as a rotation angle, and the squared change of
-    all controls against old.
+
+@compiled
+def look(problem, w, d, jets, misses):
+    """Misses of (2) at w: (sum of squares, largest as a rotation angle).
+
+    In the frame of d_{k+1} they are ln(exp(-w_{k+1}) d_k^-1 d_{k+1}) with the controls (1).
     """
-    targets, m, p, sign = problem
-    n, cyclic = w.shape[0], sign != 0.0
+    targets, m, p, sign, clamped = problem
+    n = misses.shape[0]
+    set_phantoms(w, sign != 0.0, clamped)
     set_jets(m, p, w, jets)
-    total = worst = change = 0.0
-    before, w0, x0, y0, z0 = row(w, n - 1), 1.0, 0.0, 0.0, 0.0
-    for k in range(n + 1):
-        after = row(w, k if k < n else 0)
-        f, g = m[k] * jets[k, BEFORE], p[k] * jets[k, AFTER]
-        # d_k = q_k K_k^-1, K_k^-1 = exp(-p w_{k+1}) exp(m w_k)
-        turn = mul(
-            *(jets[k, AFTER + 1], -g * after[0], -g * after[1], -g * after[2]),
-            *(jets[k, BEFORE + 1], f * before[0], f * before[1], f * before[2]),
-        )
-        w1, x1, y1, z1 = mul(*quaternion(targets, k), *turn)
-        if not cyclic or k < n:  # a closed curve's last control is its first
-            u, v, s, t = w1 - old[k, 0], x1 - old[k, 1], y1 - old[k, 2], z1 - old[k, 3]
-            change += u * u + v * v + s * s + t * t
-        set_quaternion(d, k, w1, x1, y1, z1)
-        if k > 0:
-            s, c = jets[k - 1, WHOLE], jets[k - 1, WHOLE + 1]
-            relative = between(w0, x0, y0, z0, w1, x1, y1, z1)
-            gap = between(c, s * before[0], s * before[1], s * before[2], *relative)
-            miss = small_log(*gap)
-            set_vector(misses, k - 1, miss)
-            total += squared(miss)
-            worst = max(worst, squared(miss))
-        before, w0, x0, y0, z0 = after, w1, x1, y1, z1
-    return total, 2.0 * math.sqrt(worst), change
+    set_controls(m, p, w, jets, targets, d)
+    gaps = np.empty((4, n))
+    set_gaps(w, jets, d, gaps)
+    total = worst = 0.0
+    for k in range(n):
+        miss = small_log(*control(gaps, k))
+        set_vector(misses, k, miss)
+        total += squared(miss)
+        worst = max(worst, squared(miss))
+    return total, 2.0 * math.sqrt(worst)
+
+
+@compiled
+def set_gaps(w, jets, d, gaps):
+    """exp(-w_{k+1}) d_k^-1 d_{k+1}."""
+    x, y, z = w[0], w[1], w[2]
+    s, c = jets[WHOLE], jets[WHOLE + 1]
+    d0, d1, d2, d3 = d[0], d[1], d[2], d[3]
+    g0, g1, g2, g3 = gaps[0], gaps[1], gaps[2], gaps[3]
+    for k in range(gaps.shape[1]):
+        step = between(d0[k], d1[k], d2[k], d3[k], d0[k + 1], d1[k + 1], d2[k + 1], d3[k + 1])
+        whole = (c[k], s[k] * x[k + 1], s[k] * y[k + 1], s[k] * z[k + 1])
+        g0[k], g1[k], g2[k], g3[k] = between(*whole, *step)
 
 
 @inlined
-def spun(f, a, b, w):
-    """f (I + a [v] + b [v]^2) of v = f w, from the jet of v:
+def spun(f, a, b, x, y, z):
+    """f (I + a [v] + b [v]^2) of v = f (x, y, z), from the jet of v:
 
     a = -s^2 and b give f Jr(2 v); a = -2 s c and 2 s^2 in place of b give f R(exp v)^T.
     """
-    x, y, z = f * w[0], f * w[1], f * w[2]
+    x, y, z = f * x, f * y, f * z
     n = x * x + y * y + z * z
     return (
         f * (1.0 + b * (x * x - n)),
@@ -182,47 +214,109 @@ def spun(f, a, b, w):
 
 
 @inlined
-def knot_blocks(m, before, p, after, jets, k):
-    """How K_k changes, in its own left frame: dK = (P d(after) - M d(before)) K,
+def scattered(sheet, first, j, a):
+    """Write a block down column j of the sheet."""
+    sheet[(first + 0) * COLUMNS + j] = a[0]
+    sheet[(first + 1) * COLUMNS + j] = a[1]
+    sheet[(first + 2) * COLUMNS + j] = a[2]
+    sheet[(first + 3) * COLUMNS + j] = a[3]
+    sheet[(first + 4) * COLUMNS + j] = a[4]
+    sheet[(first + 5) * COLUMNS + j] = a[5]
+    sheet[(first + 6) * COLUMNS + j] = a[6]
+    sheet[(first + 7) * COLUMNS + j] = a[7]
+    sheet[(first + 8) * COLUMNS + j] = a[8]
 
-    M = m Jr(2 m before),   P = p R(exp(-m before)) Jl(2 p after).
+
+@inlined
+def gathered(sheet, first, j):
+    """Read a block from column j of the sheet."""
+    return (
+        sheet[(first + 0) * COLUMNS + j],
+        sheet[(first + 1) * COLUMNS + j],
+        sheet[(first + 2) * COLUMNS + j],
+        sheet[(first + 3) * COLUMNS + j],
+        sheet[(first + 4) * COLUMNS + j],
+        sheet[(first + 5) * COLUMNS + j],
+        sheet[(first + 6) * COLUMNS + j],
+        sheet[(first + 7) * COLUMNS + j],
+        sheet[(first + 8) * COLUMNS + j],
+    )
+
+
+@compiled
+def set_knot_blocks(start, count, m, p, w, jets, sheet):
+    """How K_k changes in its own left frame: dK = (P_k d(w_{k+1}) - M_k d(w_k)) K; here
+
+    P_k = p R(exp(-m w_k)) Jl(2 p w_{k+1}), and M_k = m Jr(2 m w_k) where it is needed.
     """
-    s, c, b = jets[k, BEFORE], jets[k, BEFORE + 1], jets[k, BEFORE + 2]
-    t, g = jets[k, AFTER], jets[k, AFTER + 2]
-    turn = spun(1.0, -2.0 * s * c * m, 2.0 * s * s * m * m, before)
-    return spun(m, -s * s, b, before), matmul(turn, spun(p, t * t, g, after))
+    # slices: an index that starts at 0 cannot be negative, which keeps the loop free of checks
+    x, y, z, m, p = w[0, start:], w[1, start:], w[2, start:], m[start:], p[start:]
+    s, c = jets[BEFORE, start:], jets[BEFORE + 1, start:]
+    t, g = jets[AFTER, start:], jets[AFTER + 2, start:]
+    for k in range(count):
+        f = 2.0 * s[k] * m[k]
+        turn = spun(1.0, -c[k] * f, m[k] * s[k] * f, x[k], y[k], z[k])
+        left = spun(p[k], t[k] * t[k], g[k], x[k + 1], y[k + 1], z[k + 1])
+        scattered(sheet, UPPER, k, matmul(turn, left))
+
+
+@compiled
+def set_row_blocks(start, count, m, w, jets, sheet):
+    """Blocks of rows k = start ... of Newton's system, see `assemble`."""
+    x, y, z, m = w[0, start:], w[1, start:], w[2, start:], m[start:]
+    s, b = jets[BEFORE, start:], jets[BEFORE + 2, start:]
+    t, e, g = jets[WHOLE, start:], jets[WHOLE + 1, start:], jets[WHOLE + 2, start:]
+    for k in range(count):
+        u, v, t2 = k + 1, m[k + 1], t[k] * t[k]
+        back = spun(1.0, -2.0 * t[k] * e[k], 2.0 * t2, x[u], y[u], z[u])
+        own = added(
+            spun(1.0, -t2, g[k], x[u], y[u], z[u]),
+            -1.0,
+            spun(v, -s[u] * s[u], b[u], x[u], y[u], z[u]),
+        )
+        own = added(own, -1.0, matmul(back, gathered(sheet, UPPER, k)))
+        lower = matmul(back, spun(m[k], -s[k] * s[k], b[k], x[k], y[k], z[k]))
+        scattered(sheet, LOWER, k, lower)
+        scattered(sheet, OWN, k, own)
 
 
 @compiled
 def assemble(problem, w, jets, work):
-    """Eliminate Newton's system for (2); work's x holds the misses and will hold the move.
+    """Solve Newton's system for (2); work's x holds the misses and then the move.
 
     Row k, in the frame of d_{k+1}, with R = R(exp(w_{k+1}))^T:
     R M_k x_k + (Jr(2 w_{k+1}) - M_{k+1} - R P_k) x_{k+1} + P_{k+1} x_{k+2} = miss_k.
     """
-    _, m, p, sign = problem
-    n, misses = w.shape[0], work[3]
-    here = row(w, 0)
-    lower, upper = knot_blocks(m[0], row(w, n - 1), p[0], here, jets, 0)
-    for k in range(n):
-        after = row(w, k + 1 if k < n - 1 else 0)
-        next_lower, next_upper = knot_blocks(m[k + 1], here, p[k + 1], after, jets, k + 1)
-        s, c, b = jets[k, WHOLE], jets[k, WHOLE + 1], jets[k, WHOLE + 2]
-        back = spun(1.0, -2.0 * s * c, 2.0 * s * s, here)
-        diagonal = added(spun(1.0, -s * s, b, here), -1.0, next_lower)
-        diagonal = added(diagonal, -1.0, matmul(back, upper))
-        rhs = vector(misses, k)
-        forward(k, n, sign != 0.0, matmul(back, lower), diagonal, next_upper, rhs, work)
-        lower, upper, here = next_lower, next_upper, after
+    _, m, p, sign, _ = problem
+    n, misses = w.shape[1] - 2, work[3]
+    sheet = np.empty(27 * COLUMNS)
+    for start in range(0, n, COLUMNS - 1):
+        count = min(COLUMNS - 1, n - start)
+        set_knot_blocks(start, count + 1, m, p, w, jets, sheet)
+        set_row_blocks(start, count, m, w, jets, sheet)
+        for j in range(count):
+            lower, own = gathered(sheet, LOWER, j), gathered(sheet, OWN, j)
+            upper, rhs = gathered(sheet, UPPER, j + 1), vector(misses, start + j)
+            forward(start + j, n, sign != 0.0, lower, own, upper, rhs, work)
     backward(n, sign != 0.0, work)
 
 
 @inlined
 def copy(source, target, factor):
-    """target = factor source, over the rows of source."""
-    for k in range(source.shape[0]):
-        for c in range(source.shape[1]):
-            target[k, c] = factor * source[k, c]
+    """target = factor source, over the columns of source."""
+    for c in range(source.shape[0]):
+        for k in range(source.shape[1]):
+            target[c, k] = factor * source[c, k]
+
+
+@inlined
+def moved(d, old, count):
+    """Relative change of the first count controls."""
+    total = 0.0
+    for c in range(4):
+        for k in range(count):
+            total += (d[c, k] - old[c, k]) ** 2
+    return math.sqrt(total / count)
 
 
 @compiled
@@ -231,9 +325,9 @@ def descend(problem, w, controls, tolerance, by_change, limit):
 
     Changes w in place; controls[side] then belongs to it.
     """
-    n, cyclic, side = w.shape[0], problem[3] != 0.0, 0
-    work, move, jets = workspace(n, cyclic), np.empty((n, 3)), np.empty((n + 1, 9))
-    total, worst, _ = look(problem, w, controls[0], controls[1], jets, work[3])
+    n, cyclic, side = w.shape[1] - 2, problem[3] != 0.0, 0
+    work, move, jets = workspace(n, cyclic), np.empty((n, 3)), np.empty((9, n + 1))
+    total, worst = look(problem, w, controls[0], jets, work[3])
     updates, change, met = 0, 0.0, not by_change and worst <= tolerance
     while updates < limit and not met:
         assemble(problem, w, jets, work)
@@ -243,9 +337,7 @@ def descend(problem, w, controls, tolerance, by_change, limit):
         length, before, known = min(1.0, CAP / longest), total, worst
         shift(w, move, length)
         while True:
-            total, worst, moved = look(
-                problem, w, controls[1 - side], controls[side], jets, work[3]
-            )
+            total, worst = look(problem, w, controls[1 - side], jets, work[3])
             if total <= (1.0 - 2.0 * ARMIJO * length) * before or worst <= ROUNDING:
                 break
             length *= 0.5
@@ -254,7 +346,7 @@ def descend(problem, w, controls, tolerance, by_change, limit):
                 return updates, known, change, False, side
             shift(w, move, -length)
         side, updates = 1 - side, updates + 1
-        change = math.sqrt(moved / (n if cyclic else n + 1))
+        change = moved(controls[side], controls[1 - side], n if cyclic else n + 1)
         met = change <= tolerance if by_change else worst <= tolerance
         if not (met or total < before):
             break
@@ -276,9 +368,9 @@ def keep(x, move):
 @inlined
 def shift(w, move, length):
     """w + length move, in place."""
-    for k in range(w.shape[0]):
+    for k in range(move.shape[0]):
         for c in range(3):
-            w[k, c] += length * move[k, c]
+            w[c, k + 1] += length * move[k, c]
 
 
 @compiled
@@ -288,18 +380,17 @@ def continued(problem, w, controls, tolerance, by_change, limit):
     What an eased problem's solution says about the next share starts the next descent.  Gives
     the keyframes themselves as controls where it fails.
     """
-    targets, m, p, sign = problem
-    n = w.shape[0]
-    eased, best = np.empty((n + 1, 4)), np.empty((n, 3))
+    targets, m, p, sign, clamped = problem
+    eased, best = np.empty(targets.shape), np.empty(w.shape)
     done, growth, updates = 0.0, 0.25, 0
     while growth > LEAST_GROWTH and updates < limit:
         share = min(1.0, done + growth)
         ease(targets, share, eased, w)
-        if done > 0.0:
-            copy(best, w, share / done)
+        if done > 0.0:  # the outer columns stay: they may be a clamped curve's ends
+            copy(best[:, 1:-1], w[:, 1:-1], share / done)
         last = share == 1.0
         more, _, change, met, side = descend(
-            problem if last else (eased, m, p, sign),
+            problem if last else (eased, m, p, sign, clamped),
             w,
             controls,
             tolerance if last else LOOSE,
@@ -324,81 +415,78 @@ def ease(targets, share, eased, w):
 
     Only steps count in (2), so that the end of a closed chain need not be its start.
     """
-    copy(targets[:1], eased, 1.0)
-    for k in range(w.shape[0]):
-        x, y, z = log_between(*quaternion(targets, k), *quaternion(targets, k + 1))
-        set_vector(w, k, (share * x, share * y, share * z))
-        set_quaternion(eased, k + 1, *mul(*quaternion(eased, k), *turned(share, (x, y, z))))
+    set_control(eased, 0, *control(targets, 0))
+    for k in range(targets.shape[1] - 1):
+        x, y, z = log_between(*control(targets, k), *control(targets, k + 1))
+        w[0, k + 1], w[1, k + 1], w[2, k + 1] = share * x, share * y, share * z
+        set_control(eased, k + 1, *mul(*control(eased, k), *turned(share, (x, y, z))))
 
 
 @compiled
 def relax(problem, w, d, tolerance, by_change, limit):
     """The published fixed point (3), all controls at once: (updates, change)."""
-    targets, m, p, sign = problem
-    n, cyclic = w.shape[0], sign != 0.0
-    fresh = np.empty((n + 1, 4))
+    targets, m, p, sign, clamped = problem
+    n, cyclic = w.shape[1] - 2, sign != 0.0
+    fresh = np.empty(d.shape)
     copy(targets, d, 1.0)
     copy(targets, fresh, 1.0)
     updates, change = 0, 0.0
+    increments(d, w)
     while updates < limit:
-        increments(d, w)
-        worst = moved = 0.0
+        set_phantoms(w, cyclic, clamped)
+        worst = 0.0
         for i in range(0 if cyclic else 1, n):
-            before = row(w, i - 1 if i > 0 else n - 1)
-            turn = mul(*turned(-m[i], before), *turned(p[i], row(w, i)))
-            r = small_log(*between(*mul(*quaternion(d, i), *turn), *quaternion(targets, i)))
+            turn = mul(*turned(-m[i], increment(w, i)), *turned(p[i], increment(w, i + 1)))
+            r = small_log(*between(*mul(*control(d, i), *turn), *control(targets, i)))
             worst = max(worst, squared(r))
             turn = turned(1.0 / (1.0 - m[i] - p[i]), r)
-            set_quaternion(fresh, i, *mul(*quaternion(d, i), *turn))
-            for c in range(4):
-                moved += (fresh[i, c] - d[i, c]) ** 2
+            set_control(fresh, i, *mul(*control(d, i), *turn))
         if not by_change and 2.0 * math.sqrt(worst) <= tolerance:
             break
         if cyclic:
             for c in range(4):
-                fresh[n, c] = sign * fresh[0, c]
+                fresh[c, n] = sign * fresh[c, 0]
+        updates, change = updates + 1, moved(fresh, d, n if cyclic else n + 1)
         copy(fresh, d, 1.0)
-        updates, change = updates + 1, math.sqrt(moved / (n if cyclic else n + 1))
+        increments(d, w)
         if by_change and change <= tolerance:
             break
-    increments(d, w)
     return updates, change
 
 
 @compiled
-def pose(q, h, sign, clamped, velocities):
-    """The problem (targets, m, p, sign), sign 0 for an open curve; velocities (2, 3) become the
-    increments h v / 3 to a clamped curve's outer controls.
+def pose(q, h, sign, clamped, w):
+    """The problem (targets, m, p, sign, clamped), sign 0 for an open curve.
 
-    Where the end controls are known, d_0 and d_{n-1} themselves are the targets, with m = p = 0.
+    Where the end controls are known, d_0 and d_N themselves are the targets, with m = p = 0; the
+    increments h v / 3 that lead to those of a clamped curve stand in w already.
     """
     n, closed = h.size, sign != 0.0
-    targets, m, p = np.empty((n + 1, 4)), np.empty(n + 1), np.empty(n + 1)
+    targets, m, p = np.empty((4, n + 1)), np.empty(n + 1), np.empty(n + 1)
     knot_weights(h, closed, clamped, m, p)
-    copy(q, targets, 1.0)
+    for i in range(q.shape[0]):
+        set_control(targets, i, *keyframe(q, i))
     if closed:
-        copy(q[:1], targets[n:], sign)
+        set_control(targets, n, sign * q[0, 0], sign * q[0, 1], sign * q[0, 2], sign * q[0, 3])
     else:
         m[0] = p[0] = m[n] = p[n] = 0.0
     if clamped:
-        for c in range(3):
-            velocities[0, c] *= h[0] / 3.0
-            velocities[1, c] *= h[n - 1] / 3.0
-        set_quaternion(targets, 0, *mul(*quaternion(q, 0), *turned(1.0, row(velocities, 0))))
-        set_quaternion(targets, n, *mul(*quaternion(q, n), *turned(-1.0, row(velocities, 1))))
-    return targets, m, p, sign
+        set_control(targets, 0, *mul(*keyframe(q, 0), *turned(1.0, increment(w, 0))))
+        set_control(targets, n, *mul(*keyframe(q, n), *turned(-1.0, increment(w, n + 1))))
+    return targets, m, p, sign, clamped
 
 
-@inlined
-def set_velocities(q, h, parameters, velocities):
-    """Half the given end velocities (body, rad per time), or the chart's estimates."""
+@compiled
+def set_ends(q, h, parameters, w):
+    """Increments h v / 3 to a clamped curve's outer controls, v being half the given angular
+    velocities or the chart's estimates."""
     for side in range(2):
-        if parameters[HAS_START + side] != 0.0:
-            for c in range(3):
-                velocities[side, c] = 0.5 * parameters[VELOCITIES + 3 * side + c]
-        else:
-            x, y, z = end_velocity(q, h, side == 1)
-            velocities[side, 0], velocities[side, 1], velocities[side, 2] = x, y, z
+        k = VELOCITIES + 3 * side
+        v = (0.5 * parameters[k], 0.5 * parameters[k + 1], 0.5 * parameters[k + 2])
+        if parameters[HAS_START + side] == 0.0:
+            v = end_velocity(q, h, side == 1)
+        j, third = side * (h.size + 1), h[side * (h.size - 1)] / 3.0
+        w[0, j], w[1, j], w[2, j] = third * v[0], third * v[1], third * v[2]
 
 
 @compiled
@@ -432,22 +520,19 @@ def FIT(q, h, closed, sign, parameters, segments, report):
     """Segments of the interpolating spline; `parameters` as laid out by METHOD ... VELOCITIES."""
     clamped, by_change = parameters[CLAMPED] != 0.0, parameters[BY_CHANGE] != 0.0
     tolerance, limit = parameters[TOLERANCE], int(parameters[LIMIT])
-    ends, w, side = np.zeros((2, 3)), np.empty((h.size, 3)), 0
-    controls = np.empty((2, h.size + 1, 4))
+    w, controls = np.empty((3, h.size + 2)), np.empty((2, 4, h.size + 1))
     if clamped:
-        set_velocities(q, h, parameters, ends)
-    problem = pose(q, h, sign if closed else 0.0, clamped, ends)
+        set_ends(q, h, parameters, w)
+    problem = pose(q, h, sign if closed else 0.0, clamped, w)
     if parameters[METHOD] != 0.0:
         report[0], report[1] = relax(problem, w, controls[0], tolerance, by_change, limit)
-        report[3], report[2] = write_segments(
-            q, h, closed, clamped, sign, controls[0], w, ends, segments
-        )
+        report[3], report[2] = write_segments(q, h, closed, clamped, sign, controls[0], w, segments)
         return
     updates, change, met, side = newton(problem, w, controls, tolerance, by_change, limit)
     while True:
         settle(controls[side], w, met)
         report[3], report[2] = write_segments(
-            q, h, closed, clamped, sign, controls[side], w, ends, segments
+            q, h, closed, clamped, sign, controls[side], w, segments
         )
         if not met or by_change or report[2] <= tolerance or updates >= limit:
             break

@@ -46,7 +46,7 @@ class KochanekBartels(SegmentCurve):
     continuity = 1
     order = 3
     support = 4
-    constant_rate = "everywhere"
+    constant_rate: Literal["everywhere", "no"] = "everywhere"
     family = TRIANGLE
     operations = {"slerps per sample": 6, "logs per keyframe": 5, "exps per keyframe": 2}
 
@@ -67,12 +67,13 @@ class KochanekBartels(SegmentCurve):
                 per_keyframe("bias", bias, n),
             ]
         )
-        self._claim(*(tcb if keyframes.closed else tcb[:, 1:-1]), keyframes.uniform)
+        self._claim(tcb if keyframes.closed else tcb[:, 1:-1], keyframes.uniform)
         switch = SECANT if ends == "secant" else CHART
         self._solve(FIT, np.array([switch, *tcb.reshape(-1)]))
 
-    def _claim(self, t: FloatArray, c: FloatArray, b: FloatArray, uniform: bool) -> None:
+    def _claim(self, tcb: FloatArray, uniform: bool) -> None:
         """On uniform knots the weights add up to (1 - T)(1 + C B) and (1 - T)(1 - C B)."""
+        t, c, b = tcb
         if c.any():
             self.continuity = 0
         if t.any() or (c * b).any():

@@ -22,15 +22,15 @@ class LogCubicSpline(SegmentCurve):
 
     Bi-invariant, since the reference is a keyframe, but dependent on which.  The logarithm ends at
     a full turn from the reference: beyond it the points x_i jump to the other side, and the curve
-    with them, which is shown and not refused.
+    with them, which is shown and not refused.  Open only: where a loop returns as -q_0, an odd
+    number of turns later, no periodic X exists.
 
     Options
     -------
     reference
         Index of the keyframe q_ref.
     ends
-        "natural" (X'' = 0) or "not-a-knot" at open ends; closed curves are periodic.  One that
-        returns as -q_0 has no periodic X and is refused.
+        "natural" (X'' = 0) or "not-a-knot".
     """
 
     title = "Log-space cubic spline"
@@ -39,6 +39,7 @@ class LogCubicSpline(SegmentCurve):
     order = 4
     support = None
     constant_rate = "no"
+    closable = False
     family = ROTATION_VECTOR
     operations = {"exps per sample": 1, "logs per keyframe": 1}
 
@@ -58,9 +59,7 @@ class LogCubicSpline(SegmentCurve):
             )
         base = q[reference]
         x = quaternion.log(quaternion.mul(quaternion.conj(base), q))
-        if keyframes.closed:
-            x = np.concatenate([x, x[:1]])
-        spline = CubicSpline(keyframes.knots, x, bc_type="periodic" if keyframes.closed else ends)
+        spline = CubicSpline(keyframes.knots, x, bc_type=ends)
         # coefficients (power from 3 to 0, segment, track, component) of t become those of u
         power = np.arange(4)
         c = spline.c[::-1] * (h ** power[:, None])[:, :, None, None]

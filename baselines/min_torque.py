@@ -52,7 +52,7 @@ class MinimumTorqueSpline(SegmentCurve):
         *,
         subintervals: Count = 4,
         tolerance: Positive = 1e-6,
-        max_iterations: Count = 100,
+        max_iterations: Count = 500,
         on_failure: OnFailure = "raise",
     ) -> None:
         m, tracks = subintervals, keyframes.tracks

@@ -47,7 +47,7 @@ class ShoemakeBezier(SegmentCurve):
     continuity = 1
     order = 3
     support = 4
-    constant_rate = "interior"
+    constant_rate: Literal["everywhere", "interior", "no"] = "interior"
     non_uniform = False
     family = TRIANGLE
     operations = {"slerps per sample": 6, "slerps per keyframe": 1, "logs per keyframe": 3}

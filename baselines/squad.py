@@ -46,7 +46,7 @@ class Squad(SegmentCurve):
     continuity = 1
     order = 3
     support = 4
-    constant_rate = "everywhere"
+    constant_rate: Literal["everywhere", "no"] = "everywhere"
     family = SQUAD
     operations = {"slerps per sample": 3, "logs per keyframe": 6, "exps per keyframe": 2}
 

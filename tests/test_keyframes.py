@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from walks import random_units, uneven, walk
 
 from quatspline import quaternion
 from quatspline.curve import ConvergenceError, Curve, SolveReport
 from quatspline.keyframes import Keyframes, prepare
 from quatspline.options import Above, AtLeast, Count, checked, nearest, per_keyframe
+from walks import random_units, uneven, walk
 
 Q = walk(5, 60.0)
 
@@ -284,7 +284,7 @@ def test_options_per_keyframe() -> None:
     }.items():
         with pytest.raises(ValueError, match=message):
             per_keyframe("tension", list(bad), 3)
-    with pytest.raises(ValueError, match="^tension"):
+    with pytest.raises(ValueError, match=r"^tension"):
         per_keyframe("tension", [[1.0], [2.0, 3.0]], 3)
 
 

@@ -2,17 +2,18 @@
 
 import itertools
 import json
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import mpmath as mp
 import numpy as np
 import pytest
-from walks import apart, random_units, uneven, walk
 
 import quatspline as qs
 from quatspline import quaternion
 from quatspline.families import cumulative
+from walks import apart, random_units, uneven, walk
 
 DIGITS = 50
 ZERO = 1e-20
@@ -210,7 +211,8 @@ def test_printed_second_derivative_on_the_golden_keys() -> None:
     for i, gap, whole in ((1, 0.169, 3.080), (2, 0.398, 3.700), (3, 0.424, 4.508)):
         a, b = knot(q, i)
         true = corrected(q[i], a, b)
-        assert float(size(plus(true, times(-1, printed(q[i], a, b))))) == pytest.approx(gap, abs=1e-3)
+        wrong = plus(true, times(-1, printed(q[i], a, b)))
+        assert float(size(wrong)) == pytest.approx(gap, abs=1e-3)
         assert float(size(true)) == pytest.approx(whole, abs=1e-3)
 
 
@@ -334,8 +336,11 @@ def test_arbitrary_knots(kappa: int) -> None:
     q = with_ghosts([unit(row) for row in frames])
     for i in (2, 3, 4):
         for order in (1, 2):
-            before = derivatives(lambda u, i=i: general_segment(q, h, i - 1, u, kappa), mp.mpf(1), order)
-            after = derivatives(lambda u, i=i: general_segment(q, h, i, u, kappa), mp.mpf(0), order)
+            left, right = (partial(general_segment, q, h, j, kappa=kappa) for j in (i - 1, i))
+            before, after = (
+                derivatives(left, mp.mpf(1), order),
+                derivatives(right, mp.mpf(0), order),
+            )
             gap = plus(times(h[i] ** -order, after), times(-(h[i - 1] ** -order), before))
             assert size(gap) < ZERO
     knots = np.concatenate([[0.0], np.cumsum([float(x) for x in h[1:-1]])])
@@ -377,8 +382,8 @@ def golden_curve(case: str, **more: Any) -> Any:
 @pytest.mark.parametrize("case", CASES)
 def test_golden_numbers(case: str) -> None:
     iterative = CASES[case][0] == "nielson"
-    exactly = {"tolerance": 1e-300, "on_failure": "return", "max_iterations": 400} if iterative else {}
-    curve = golden_curve(case, **exactly)
+    to_the_end = {"tolerance": 1e-300, "on_failure": "return", "max_iterations": 400}
+    curve = golden_curve(case, **(to_the_end if iterative else {}))
     if iterative:
         assert curve.solve_report.residual < 4e-15
     for entry in GOLDEN["schemes"][case]["values"]:

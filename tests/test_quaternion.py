@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.spatial.transform import Rotation, Slerp
-from walks import random_units
 
 from quatspline import quaternion as qn
+from walks import random_units
 
 EXACT = 1e-14
 """A few roundings."""
@@ -57,7 +57,8 @@ def exactly(array: np.ndarray) -> list[mp.mpf]:
 def off(computed: np.ndarray, wanted: list[mp.mpf]) -> float:
     """The relative error of a vector."""
     with mp.workdps(DIGITS):
-        gap = mp.sqrt(sum((mp.mpf(float(c)) - w) ** 2 for c, w in zip(computed, wanted, strict=True)))
+        pairs = zip(computed, wanted, strict=True)
+        gap = mp.sqrt(sum((mp.mpf(float(c)) - w) ** 2 for c, w in pairs))
         size = mp.sqrt(sum(w * w for w in wanted))
         return float(gap / size) if size else float(gap)
 
@@ -168,7 +169,7 @@ def test_between_parallel_and_opposite() -> None:
         nearly = qn.between(direction, -direction + 1e-10 * np.roll(direction, 1))
         assert np.isfinite(nearly).all()
     for name, vectors in {"u": ([0, 0, 0], [1, 0, 0]), "v": ([1, 0, 0], [0, 0, 0])}.items():
-        with pytest.raises(ValueError, match=f"^{name} has a direction of length zero"):
+        with pytest.raises(ValueError, match=rf"^{name} has a direction of length zero"):
             qn.between(*vectors)
 
 
@@ -260,7 +261,7 @@ def test_broadcasting() -> None:
 
 
 def precise_jacobian(r: np.ndarray) -> np.ndarray:
-    """Jr by central differences in 40 digits: exp(r)^-1 exp(r + d) = exp(Jr d) (rotation vectors)."""
+    """Jr by central differences in 40 digits: exp(r)^-1 exp(r + d) = exp(Jr d), full angles."""
     with mp.workdps(DIGITS):
         step = mp.mpf(10) ** -12
         columns = []

@@ -20,7 +20,7 @@ import re
 import tempfile
 import threading
 from collections.abc import Callable
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
@@ -37,6 +37,9 @@ ROWS = 64
 
 CONSTANTS = 2
 """The first row of the segment's constants."""
+
+SCRATCH = ROWS - 16
+"""The first of twelve rows for intermediate results: short loops over them fill the pipeline."""
 
 RESULT = ROWS - 4
 """The first row of the result: w, x, y, z of a quaternion or x, y, z of a rate."""
@@ -110,18 +113,16 @@ class Kernel:
     def __init__(self, function: Callable[..., Any], signature: Any) -> None:
         self.python = function
         self.signature = signature
-        self._compiled: Any = None
+        self._compiled: Any = None  # kept alive: the address belongs to it
 
-    @property
+    @cached_property
     def address(self) -> int:
         """The address of the compiled function; compiles it, or loads it from the cache."""
-        if self._compiled is None:
-            with _compiling:
-                if self._compiled is None:
-                    self._compiled = _cached(
-                        self.python,
-                        lambda: numba.cfunc(self.signature, cache=True, **SETTINGS)(self.python)
-                    )
+        with _compiling:
+            self._compiled = _cached(
+                self.python,
+                lambda: numba.cfunc(self.signature, cache=True, **SETTINGS)(self.python),
+            )
         return int(self._compiled.address)
 
 

@@ -234,17 +234,21 @@ class Curve(abc.ABC):
             On NaN, times outside an open domain, an order that the scheme lacks, a wrong out.
         """
         samples = _samples(t)
-        order = self._checked_order(order)
+        if type(order) is not int or order not in self.orders:
+            order = self._checked_order(order)
         if frame not in ("body", "world"):
             raise ValueError(f"frame={frame!r}: expected 'body' or 'world'")
-        shape = (*samples.shape, *self._keyframes.track_shape, 3 if order else 4)
+        if threads != 1:
+            threads = _checked_threads(threads)
+        tracks = self._keyframes.track_shape
+        shape = (*samples.shape, *tracks, 3 if order else 4)
         result = np.empty(shape) if out is None else _checked_out(out, shape)
-        flat = _flat(result, samples.size, self._keyframes.tracks.shape[0])
-        threads = _checked_threads(threads)
+        flat = result if result.flags.c_contiguous else np.empty(shape)
         if samples.size:
-            self._evaluate(samples, order, flat, threads)
-        if not np.shares_memory(flat, result):
-            result[...] = flat.reshape(shape)
+            block = flat.reshape(samples.size, self._keyframes.tracks.shape[0], shape[-1])
+            self._evaluate(samples, order, block, threads)
+        if flat is not result:
+            result[...] = flat
         if order and frame == "world":
             result[...] = quaternion.rotate(self(t, threads=threads), result)
         return result
@@ -293,7 +297,8 @@ class Curve(abc.ABC):
         self._options = options.checked(self.name, type(self)._fit, given)
         self._keyframes = keyframes
         if self.batched or keyframes.tracks.shape[0] == 1:
-            self._parts: tuple[Curve, ...] = (self,)
+            # No part is the curve itself: a cycle would keep its memory until garbage collection.
+            self._parts: tuple[Curve, ...] = ()
             self._fit(keyframes, **self._options)
         else:
             self._parts = tuple(
@@ -305,7 +310,7 @@ class Curve(abc.ABC):
     def _evaluate(self, samples: FloatArray, order: int, out: FloatArray, threads: int) -> None:
         """Fill out (m, K, 4 or 3) at the samples."""
         t, flips = self._wrapped(samples)
-        for k, part in enumerate(self._parts):
+        for k, part in enumerate(self._parts or (self,)):
             evaluate = (part._orientation, part._velocity, part._acceleration)[order]
             out[:, k] = evaluate(t)
             if order == 0 and self._keyframes.signs[k] < 0.0:
@@ -403,11 +408,6 @@ def _checked_threads(threads: Any) -> int:
     if count < 1:
         raise ValueError(f"threads={count}: expected at least 1")
     return count
-
-
-def _flat(result: FloatArray, samples: int, tracks: int) -> FloatArray:
-    """The result as (m, K, width): a view where strides allow, otherwise a buffer of that shape."""
-    return result.reshape(samples, tracks, result.shape[-1])
 
 
 def _joined(reports: list[SolveReport | None], shape: tuple[int, ...]) -> SolveReport | None:

@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 ONE_AXIS = 1e-12
 """Vector parts that leave one line by less than this make a spin about one axis."""
 
+STEPS = np.arange(16) / 16
+"""Shares of a segment at which the angle is followed: less than half a turn of S^3 between two."""
+
 
 def log_curve(curve: Curve, t: ArrayLike) -> FloatArray:
     """ln q(t), shape S + (*K, 3); see `Curve.log`."""
@@ -49,17 +52,19 @@ def _common_axis(q: FloatArray) -> FloatArray | None:
 
 
 def _lifted(curve: Curve, k: int, axis: FloatArray, t: FloatArray, q: FloatArray) -> FloatArray:
-    """The continuous angle about the axis: the branch nearest to the keyframes' own turning."""
-    keyframes = curve.keyframes
-    angle = np.arctan2(q[..., 1:] @ axis, q[..., 0])
-    at_keys = np.arctan2(keyframes.tracks[k][:, 1:] @ axis, keyframes.tracks[k][:, 0])
-    if keyframes.closed:
-        closing = at_keys[0] + (0.0 if keyframes.signs[k] > 0 else np.pi)
-        at_keys = np.append(at_keys, closing)
-    turning = np.unwrap(at_keys)
+    """The continuous angle about the axis: the branch on which the curve arrives from its start."""
+    knots = curve.keyframes.knots
+    grid = np.append(knots[:-1, None] + np.diff(knots)[:, None] * STEPS, knots[-1])
+    along = curve(np.clip(curve.domain[0] + grid, *curve.domain)).reshape(grid.size, -1, 4)[:, k]
+    turning = np.unwrap(_angle(along, axis))
     since = t - curve.domain[0]
-    period = keyframes.knots[-1]
-    periods = np.floor(since / period) if keyframes.closed else np.zeros_like(since)
-    rough = np.interp(since - periods * period, keyframes.knots, turning)
+    periods = np.floor(since / knots[-1]) if curve.closed else np.zeros_like(since)
+    rough = np.interp(since - periods * knots[-1], grid, turning)
     rough = rough + periods * (turning[-1] - turning[0])
+    angle = _angle(q, axis)
     return angle + 2.0 * np.pi * np.rint((rough - angle) / (2.0 * np.pi))
+
+
+def _angle(q: FloatArray, axis: FloatArray) -> FloatArray:
+    """theta of exp(theta axis), -pi < theta <= pi."""
+    return np.arctan2(q[..., 1:] @ axis, q[..., 0])

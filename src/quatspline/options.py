@@ -111,9 +111,11 @@ def _check_any(name: str, value: Any, kinds: tuple[Any, ...]) -> None:
         if kind is type(None):
             continue
         try:
-            return _check(name, value, kind)
+            _check(name, value, kind)
         except ValueError as refusal:
             refusals.append(refusal)
+        else:
+            return
     raise refusals[0]
 
 

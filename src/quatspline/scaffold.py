@@ -23,7 +23,7 @@ def new_scheme(name: str, folder: Path) -> Path:
         For a name that no scheme can have, or that one has, and for a file or folder in the way.
     """
     if not NAME.fullmatch(name) or keyword.iskeyword(name):
-        raise ValueError(f"{name!r} is not a name: letters, digits and single _ or -, a letter first")
+        raise ValueError(f"{name!r} is not a name: letters and digits, joined by single _ or -")
     stem = name.lower().replace("-", "_")
     key = stem.replace("_", "-")
     if key in found():

@@ -12,6 +12,10 @@ At the knot itself only three functions remain,
 
 and B_i(t_i) = 1 - m_i - p_i.  Beyond the ends of an open curve lie phantom knots: reflected
 (natural), or repeated (clamped: zero spacings).
+
+With N segments the knots are 0 ... N, of which a closed curve's last is its first.  Controls d are
+held as (4, N + 1) and increments w as (3, N + 2), component first so that loops vectorise: column j
+is w_j, and w_0 and w_{N+1} lead to the controls beyond the ends.
 """
 
 from __future__ import annotations
@@ -21,7 +25,6 @@ import math
 from quatspline._jit import compiled, inlined
 from quatspline.families.cumulative import set_base, set_factor
 from quatspline.primitives import (
-    NEAR,
     NEAR,
     between,
     cross,
@@ -40,21 +43,27 @@ ROUNDING = 1e-14
 
 
 @inlined
-def row(array, k):
-    """Vector k of an (n, 3) array."""
-    return array[k, 0], array[k, 1], array[k, 2]
+def increment(w, j):
+    """Column j of increments (3, N + 2)."""
+    return w[0, j], w[1, j], w[2, j]
 
 
 @inlined
-def quaternion(array, k):
-    """Quaternion k of an (n, 4) array."""
-    return array[k, 0], array[k, 1], array[k, 2], array[k, 3]
+def control(d, k):
+    """Column k of quaternions (4, N + 1)."""
+    return d[0, k], d[1, k], d[2, k], d[3, k]
 
 
 @inlined
-def set_quaternion(array, k, w, x, y, z):
-    """Write quaternion k of an (n, 4) array."""
-    array[k, 0], array[k, 1], array[k, 2], array[k, 3] = w, x, y, z
+def set_control(d, k, w, x, y, z):
+    """Write column k of quaternions (4, N + 1)."""
+    d[0, k], d[1, k], d[2, k], d[3, k] = w, x, y, z
+
+
+@inlined
+def keyframe(q, i):
+    """Keyframe i of (n, 4)."""
+    return q[i, 0], q[i, 1], q[i, 2], q[i, 3]
 
 
 @compiled
@@ -118,7 +127,7 @@ def weight_after(h1, h2, h3):
 
 @compiled
 def knot_weights(h, closed, clamped, m, p):
-    """Fill m and p (segments + 1,) with (2) and (3) at every knot, the closing one included."""
+    """Fill m and p (N + 1,) with (2) and (3) at every knot."""
     for i in range(h.size + 1):
         h1, h2 = spacing(h, i - 1, closed, clamped), spacing(h, i, closed, clamped)
         m[i] = weight_before(spacing(h, i - 2, closed, clamped), h1, h2)
@@ -161,10 +170,21 @@ def set_segment(segments, i, base, x, y, z, m0, coefficients, p1):
 
 
 @compiled
+def set_phantoms(w, closed, clamped):
+    """w_0 and w_{N+1} from the others: wrapped, or repeated; a clamped curve's are given."""
+    n = w.shape[1] - 2
+    for c in range(3):
+        if closed:
+            w[c, 0], w[c, n + 1] = w[c, n], w[c, 1]
+        elif not clamped:
+            w[c, 0], w[c, n + 1] = w[c, 1], w[c, n]
+
+
+@compiled
 def increments(d, w):
-    """w_{k+1} = ln(d_k^-1 d_{k+1}) from d (segments + 1, 4) into w (segments, 3)."""
-    for k in range(w.shape[0]):
-        w[k, 0], w[k, 1], w[k, 2] = log_between(*quaternion(d, k), *quaternion(d, k + 1))
+    """w_j = ln(d_{j-1}^-1 d_j), j = 1 ... N."""
+    for j in range(1, d.shape[1]):
+        w[0, j], w[1, j], w[2, j] = log_between(*control(d, j - 1), *control(d, j))
 
 
 @inlined
@@ -186,23 +206,22 @@ def _following(whole, w, gap):
 
 @compiled
 def tie(d, w):
-    """Bring free increments back onto the controls, d_{k+1} = d_k exp(w_{k+1}), to first order.
+    """Bring free increments back onto the controls, d_j = d_{j-1} exp(w_j), to first order.
 
     An unfinished solve leaves gaps that would be jumps of the curve; tied, it is C^2 and misses
     keyframes instead.  Lengths may exceed pi, where the logarithm is on another branch, hence
     a correction.  Returns the largest gap met.
     """
     worst = 0.0
-    for k in range(w.shape[0]):
-        whole = turned(1.0, row(w, k))
-        relative = between(*quaternion(d, k), *quaternion(d, k + 1))
-        gap = small_log(*between(*whole, *relative))
+    for j in range(1, d.shape[1]):
+        whole = turned(1.0, increment(w, j))
+        gap = small_log(*between(*whole, *between(*control(d, j - 1), *control(d, j))))
         worst = max(worst, squared(gap))
         if squared(gap) > ROUNDING * ROUNDING:
-            x, y, z = _following(whole, row(w, k), gap)
-            w[k, 0] += x
-            w[k, 1] += y
-            w[k, 2] += z
+            x, y, z = _following(whole, increment(w, j), gap)
+            w[0, j] += x
+            w[1, j] += y
+            w[2, j] += z
     return math.sqrt(worst)
 
 
@@ -215,39 +234,31 @@ def _miss(base, turn, q, i, sign):
 
 
 @compiled
-def write_segments(q, h, closed, clamped, sign, d, w, ends, segments):
-    """Constants of (1) from controls d (segments + 1, 4) and the increments w (segments, 3) between
-    them; ends (2, 3) are the increments to the outer controls of a clamped curve.
+def write_segments(q, h, closed, clamped, sign, d, w, segments):
+    """Constants of (1) from controls d and the increments w between them, phantoms included.
 
     Returns (reach, residual): the largest half angle that a sample meets, and the largest miss
     at a keyframe in rad, taken on both of its sides with the constants that were written.
     """
     n = h.size
     reach = worst = 0.0
-    x = row(ends, 0) if clamped else row(w, n - 1 if closed else 0)
-    if closed:
-        base = (sign * d[n - 1, 0], sign * d[n - 1, 1], sign * d[n - 1, 2], sign * d[n - 1, 3])
-    else:
-        base = mul(*quaternion(d, 0), *turned(-1.0, x))
+    set_phantoms(w, closed, clamped)
+    x, y = increment(w, 0), increment(w, 1)
+    base = mul(*control(d, 0), *turned(-1.0, x))
     h1, h2, h3 = spacing(h, -1, closed, clamped), h[0], spacing(h, 1, closed, clamped)
     m0 = weight_before(spacing(h, -2, closed, clamped), h1, h2)
-    y = row(w, 0)
     turn = mul(*turned(1.0 - m0, x), *turned(weight_after(h1, h2, h3), y))
     for i in range(n):
         h4 = spacing(h, i + 2, closed, clamped)
         m1, p1 = weight_before(h1, h2, h3), weight_after(h2, h3, h4)
-        z = y
-        if i < n - 1 or closed:
-            z = row(w, i + 1 if i < n - 1 else 0)
-        elif clamped:
-            z = row(ends, 1)
+        z = increment(w, i + 2)
         reach = max(reach, set_segment(segments, i, base, x, y, z, m0, middle(h1, h2, h3, m1), p1))
         worst = max(worst, _miss(base, turn, q, i, 1.0))
         whole = mul(*base, *turned(1.0, x))
         turn = mul(*turned(1.0 - m1, y), *turned(p1, z))
         last = closed and i == n - 1
         worst = max(worst, _miss(whole, turn, q, 0 if last else i + 1, sign if last else 1.0))
-        base = quaternion(d, i)
+        base = control(d, i)
         h1, h2, h3, m0, x, y = h2, h3, h4, m1, y, z
     return reach, 2.0 * math.asin(min(1.0, math.sqrt(worst)))
 
@@ -270,7 +281,7 @@ def end_velocity(q, h, at_end):
             if k != j:
                 tk = _since(h, origin, step, k)
                 weight *= tk / (tk - tj)
-        x, y, z = log_between(*quaternion(q, origin), *quaternion(q, origin + step * j))
+        x, y, z = log_between(*keyframe(q, origin), *keyframe(q, origin + step * j))
         vx += weight * x
         vy += weight * y
         vz += weight * z

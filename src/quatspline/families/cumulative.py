@@ -47,6 +47,13 @@ def set_factor(segments, i, k, x, y, z, c0, c1, c2, c3, c4, c5):
     Returns a bound of the half angle over u in [0, 1].
     """
     length, nx, ny, nz = polar(x, y, z)
+    set_turn(segments, i, k, length, nx, ny, nz, c0, c1, c2, c3, c4, c5)
+    return length * bound(c0, c1, c2, c3, c4, c5)
+
+
+@inlined
+def set_turn(segments, i, k, length, nx, ny, nz, c0, c1, c2, c3, c4, c5):
+    """Factor k of segment i from the length and the axis of v."""
     segments[i, AXES + 3 * k] = nx
     segments[i, AXES + 3 * k + 1] = ny
     segments[i, AXES + 3 * k + 2] = nz
@@ -64,7 +71,6 @@ def set_factor(segments, i, k, x, y, z, c0, c1, c2, c3, c4, c5):
         segments[i, Q0N1 + 1] = a
         segments[i, Q0N1 + 2] = b
         segments[i, Q0N1 + 3] = c
-    return length * bound(c0, c1, c2, c3, c4, c5)
 
 
 @inlined

@@ -5,20 +5,36 @@ slerp of those two at z(u), all parameters affine in u.  De Casteljau's algorith
 
 Squad: slerp(p_0(u), p_1(u), 2u(1 - u)).
 
-Rates propagate 2-jets (p, p', p'') in R^4 through slerp(a, b, u) = f(1 - u) a + f(u) b.  With
-delta = |a - b|^2 / 2 = 1 - cos(theta), the weight f(v, delta) = sin(v theta)/sin(theta) is analytic
-at delta = 0: v 2F1(1 + v, 1 - v; 3/2; delta/2).  Small arcs take the series, others closed forms.
+Rates propagate 2-jets (p, p', p'') in R^4 through slerp(a, b, u) = f(1 - u) a + f(u) b with
+
+    f(v) = sin(v theta)/sin(theta) = v sigma(v^2 z) / sigma(z),  z = theta^2                     (1)
+
+where sigma(z) = sin(theta)/theta is entire in z, and so is |a - b|^2 as a function of z: no angle,
+however small, loses digits.
 """
 
 from __future__ import annotations
 
 import math
 
-from quatspline._jit import BLOCK, CONSTANTS, RESULT, ROWS, compiled, inlined, sample_kernel
+from quatspline._jit import BLOCK, CONSTANTS, RESULT, ROWS, inlined, sample_kernel
 from quatspline.families.arcs import SIZE as ARC_SIZE
 from quatspline.families.arcs import along
 from quatspline.families.segments import Family, carray
-from quatspline.primitives import between, sincos, slerp
+from quatspline.primitives import (
+    S1,
+    S2,
+    S3,
+    S4,
+    S5,
+    S6,
+    S7,
+    S8,
+    arc_angle,
+    between,
+    sincos,
+    slerp,
+)
 
 PARAMETERS = 3 * ARC_SIZE
 """First of the six pairs (value at u = 0, slope) of x_0, x_1, x_2, y_0, y_1, z."""
@@ -26,9 +42,9 @@ PARAMETERS = 3 * ARC_SIZE
 TRIANGLE_SIZE = PARAMETERS + 12
 SQUAD_SIZE = 2 * ARC_SIZE
 
-SMALL = 0.03
-"""delta below which the series is used: twelve terms reach rounding."""
-TERMS = 12
+FAR = 2.25
+"""z = theta^2 up to which the polynomial of sin(theta)/theta serves (to 2e-14 for its second
+derivative); beyond it closed forms."""
 
 
 @inlined
@@ -100,66 +116,60 @@ def _combine(f, a, g, b):
     )
 
 
-@compiled
-def _weight(v, delta, theta, sine, cosine):
-    """f(v, delta) and its derivatives f_v, f_d, f_vv, f_vd, f_dd."""
-    if delta < SMALL:
-        p0, p1, p2 = 1.0, 0.0, 0.0  # prod (k^2 - v^2) and its derivatives by v
-        scale, before, last = 1.0, 0.0, 0.0  # c_k delta^k, delta^(k-1), delta^(k-2)
-        f = fv = fd = fvv = fvd = fdd = 0.0
-        for k in range(TERMS):
-            g0, g1, g2 = v * p0, p0 + v * p1, 2.0 * p1 + v * p2
-            f += scale * g0
-            fv += scale * g1
-            fvv += scale * g2
-            fd += k * before * g0
-            fvd += k * before * g1
-            fdd += k * (k - 1) * last * g0
-            m = (k + 1.0) * (k + 1.0)
-            p0, p1, p2 = (
-                p0 * (m - v * v),
-                p1 * (m - v * v) - 2.0 * v * p0,
-                p2 * (m - v * v) - 4.0 * v * p1 - 2.0 * p0,
-            )
-            step = 0.5 / ((k + 1.5) * (k + 1.0))
-            scale, before, last = scale * step * delta, scale * step, before * step
-        return f, fv, fd, fvv, fvd, fdd
-    s, c = math.sin(v * theta), math.cos(v * theta)
-    f = s / sine
-    fv = theta * c / sine
-    fvv = -theta * theta * f
-    fd = (v * c - cosine * f) / (sine * sine)
-    # (1 - c^2) f_cc - 3 c f_c + (v^2 - 1) f = 0 with c = 1 - delta, f_c = -f_d
-    fdd = ((1.0 - v * v) * f - 3.0 * cosine * fd) / (sine * sine)
-    fvd = ((c - v * theta * s) / sine - theta * c * cosine / (sine * sine)) / sine
-    return f, fv, fd, fvv, fvd, fdd
-
-
 @inlined
-def _weight_jet(v, v1, delta, d1, d2, theta, sine, cosine):
-    """f, f', f'' along v(u), affine or with v'' folded in by the caller, and delta(u)."""
-    f, fv, fd, fvv, fvd, fdd = _weight(v, delta, theta, sine, cosine)
+def sinc_jet(z):
+    """sigma(z) = sin(sqrt z)/sqrt z and its first two derivatives: entire in z, branch-free.
+
+    Beyond FAR by 4 z sigma'' + 6 sigma' + sigma = 0.
+    """
+    n = min(z, FAR)
+    s0 = ((((((S8 * n + S7) * n + S6) * n + S5) * n + S4) * n + S3) * n + S2) * n + S1
+    s1 = (
+        ((((7.0 * S8 * n + 6.0 * S7) * n + 5.0 * S6) * n + 4.0 * S5) * n + 3.0 * S4) * n + 2.0 * S3
+    ) * n + S2
+    s2 = (
+        (((42.0 * S8 * n + 30.0 * S7) * n + 20.0 * S6) * n + 12.0 * S5) * n + 6.0 * S4
+    ) * n + 2.0 * S3
+    m = max(z, FAR)
+    r = math.sqrt(m)
+    sine, cosine = sincos(r)
+    k = 0.5 / m
+    f0 = sine / r
+    f1 = k * (cosine - f0)
+    f2 = -k * (0.5 * f0 + 3.0 * f1)
+    far = z > FAR
     return (
-        f,
-        fv * v1 + fd * d1,
-        fvv * v1 * v1 + 2.0 * fvd * v1 * d1 + fdd * d1 * d1 + fd * d2,
-        fv,
+        f0 if far else 1.0 + n * s0,
+        f1 if far else s0 + n * s1,
+        f2 if far else 2.0 * s1 + n * s2,
     )
 
 
-@compiled
+@inlined
+def _weight_jet(v, v1, v2, z, z1, z2, d, d1, d2):
+    """f, f', f'' of (1) along v(x), z(x), given sigma(z) with its derivatives d, d1, d2 by x."""
+    s, sw, sww = sinc_jet(v * v * z)
+    w1 = 2.0 * v * v1 * z + v * v * z1
+    w2 = 2.0 * (v1 * v1 + v * v2) * z + 4.0 * v * v1 * z1 + v * v * z2
+    f = v * s / d
+    f1 = (v1 * s + v * sw * w1 - f * d1) / d
+    f2 = v2 * s + 2.0 * v1 * sw * w1 + v * (sww * w1 * w1 + sw * w2)
+    return f, f1, (f2 - 2.0 * f1 * d1 - f * d2) / d
+
+
+@inlined
 def slerp_jet(a, a1, a2, b, b1, b2, u, u1, u2):
     """The 2-jet of slerp(a(x), b(x), u(x)) from the 2-jets of its arguments."""
     e, e1, e2 = _combine(1.0, a, -1.0, b), _combine(1.0, a1, -1.0, b1), _combine(1.0, a2, -1.0, b2)
-    m = _combine(1.0, a, 1.0, b)
-    minus = _dot(e, e)
-    delta, d1, d2 = 0.5 * minus, _dot(e, e1), _dot(e1, e1) + _dot(e, e2)
-    theta = 2.0 * math.atan2(math.sqrt(minus), math.sqrt(_dot(m, m)))
-    sine, cosine = math.sin(theta), 1.0 - delta
-    f, f1, f2, fv = _weight_jet(1.0 - u, -u1, delta, d1, d2, theta, sine, cosine)
-    g, g1, g2, gv = _weight_jet(u, u1, delta, d1, d2, theta, sine, cosine)
-    f2 -= fv * u2
-    g2 += gv * u2
+    theta, _, _ = arc_angle(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3])
+    # z = theta^2 from |a - b|^2 = 2 (1 - cos(theta)): z' = (|a - b|^2)' / sigma(z)
+    z = theta * theta
+    d, dz, dzz = sinc_jet(z)
+    z1 = 2.0 * _dot(e, e1) / d
+    z2 = (2.0 * (_dot(e1, e1) + _dot(e, e2)) - z1 * dz * z1) / d
+    d1, d2 = dz * z1, dzz * z1 * z1 + dz * z2
+    f, f1, f2 = _weight_jet(1.0 - u, -u1, -u2, z, z1, z2, d, d1, d2)
+    g, g1, g2 = _weight_jet(u, u1, u2, z, z1, z2, d, d1, d2)
     p = _combine(f, a, g, b)
     p1 = _combine(1.0, _combine(f1, a, g1, b), 1.0, _combine(f, a1, g, b1))
     p2 = _combine(
@@ -175,7 +185,7 @@ def slerp_jet(a, a1, a2, b, b1, b2, u, u1, u2):
 def _arc_jet(s, k, j, x, slope):
     c = CONSTANTS + ARC_SIZE * k
     theta = s[c + 8, j]
-    sine, cosine = math.sin(x * theta), math.cos(x * theta)
+    sine, cosine = sincos(x * theta)
     rate = theta * slope
     p = along(s, c, j, sine, cosine)
     p1 = along(s, c, j, rate * cosine, -rate * sine)
@@ -187,7 +197,7 @@ def _slope(s, k, j):
     return s[CONSTANTS + PARAMETERS + 2 * k + 1, j]
 
 
-@compiled
+@inlined
 def _triangle_jet(s, j):
     """q, q', q'' of the triangle with respect to u."""
     u = s[0, j]
@@ -200,7 +210,7 @@ def _triangle_jet(s, j):
     return slerp_jet(a, a1, a2, b, b1, b2, z, _slope(s, 5, j), 0.0)
 
 
-@compiled
+@inlined
 def _squad_jet(s, j):
     """q, q', q'' of the squad with respect to u."""
     u = s[0, j]

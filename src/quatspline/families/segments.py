@@ -25,6 +25,7 @@ from quatspline._jit import (
     call_fit,
     call_sample,
     compiled,
+    inlined,
 )
 from quatspline.curve import WRONG_FIXED_POINT, Curve, SolveReport
 from quatspline.keyframes import Keyframes
@@ -93,6 +94,7 @@ class SegmentCurve(Curve):
         """
         self.segments = segments
         self.segment_knots = self._keyframes.knots if knots is None else knots
+        self._first = float(self._keyframes.times[0])
         self.kernels = self.family.near if reach <= NEAR else self.family.far
 
     def _report(
@@ -115,32 +117,36 @@ class SegmentCurve(Curve):
         self._conclude(SolveReport(method, stop, *values, tolerance), on_failure)
 
     def _evaluate(self, samples: FloatArray, order: int, out: FloatArray, threads: int) -> None:
-        t = np.ascontiguousarray(samples.reshape(-1))
-        count = min(threads, max(1, t.size // THREAD_MINIMUM))
-        if count == 1:
-            bad = self._sample(t, order, out)
+        t = samples.reshape(-1)
+        if not (t.flags.c_contiguous and t.flags.writeable):  # one compiled signature serves all
+            t = t.copy()
+        origin = self._first
+        if threads == 1 or t.size < 2 * THREAD_MINIMUM:
+            bad = self._sample(t, order, out.reshape(-1), origin)
         else:
-            edges = np.linspace(0, t.size, count + 1).astype(int)
-            with ThreadPoolExecutor(count) as pool:
-                runs = [
-                    pool.submit(self._sample, t[a:b], order, out[a:b])
-                    for a, b in zip(edges, edges[1:], strict=False)
-                ]
-                found = [(run.result(), a) for run, a in zip(runs, edges, strict=False)]
-            bad = min((index + a for index, a in found if index >= 0), default=-1)
+            bad = self._sample_in_threads(t, order, out, min(threads, t.size // THREAD_MINIMUM))
         if bad >= 0:
             self._refuse(samples, int(bad))
 
-    def _sample(self, t: FloatArray, order: int, out: FloatArray) -> int:
-        frames = self._keyframes
+    def _sample_in_threads(self, t: FloatArray, order: int, out: FloatArray, count: int) -> int:
+        edges = np.linspace(0, t.size, count + 1).astype(int)
+        with ThreadPoolExecutor(count) as pool:
+            runs = [
+                pool.submit(self._sample, t[a:b], order, out[a:b].reshape(-1), self._first)
+                for a, b in zip(edges, edges[1:], strict=False)
+            ]
+            found = [(run.result(), a) for run, a in zip(runs, edges, strict=False)]
+        return min((index + a for index, a in found if index >= 0), default=-1)
+
+    def _sample(self, t: FloatArray, order: int, out: FloatArray, origin: float) -> int:
         index: int = sample(
             self.kernels[order].address,
             order,
             self.segment_knots,
             self.segments,
-            frames.closed,
-            frames.signs,
-            frames.times[0],
+            self._keyframes.closed,
+            self._keyframes.signs,
+            origin,
             self._slack,
             t,
             out,
@@ -159,8 +165,9 @@ class SegmentCurve(Curve):
         return self._inner(t, 2)
 
     def _inner(self, t: FloatArray, order: int) -> FloatArray:
-        out = np.empty((t.size, self._keyframes.tracks.shape[0], 3 if order else 4))
-        self._evaluate(t + self._keyframes.times[0], order, out, 1)
+        tracks, width = self._keyframes.tracks.shape[0], 3 if order else 4
+        out = np.empty((t.size, tracks, width))
+        self._sample(np.array(t, dtype=float), order, out.reshape(-1), 0.0)
         return out[:, 0]
 
 
@@ -173,122 +180,145 @@ def fit_tracks(address, tracks, h, closed, signs, parameters, segments, report):
 
 @compiled
 def sample(address, order, knots, segments, closed, signs, origin, slack, t, out):
-    """Evaluate all tracks at t (m,) into out (m, K, 4 or 3); the first bad index, or -1."""
+    """Evaluate all tracks at t (m,) into out (m * K * width,); the first bad index, or -1."""
     size = min(BATCH, t.size)
+    blocks = (size + BLOCK - 1) // BLOCK
     sheet = np.empty((ROWS, BLOCK))
-    where = np.empty(size, np.int64)
+    pointer = sheet.ctypes
     u = np.empty(size)
-    flip = np.zeros(size, np.bool_)
+    where = np.empty(size, np.int64)
+    run = np.empty(blocks, np.int64)  # the segment of a whole block, or -1
+    tracks = segments.shape[0]
     segment = 0
     for start in range(0, t.size, size):
         count = min(size, t.size - start)
-        segment, flips, bad = _locate(
-            knots, closed, origin, slack, t[start : start + count], segment, where, u, flip
+        segment, wraps, bad = _locate(
+            knots, closed, origin, slack, t[start : start + count], segment, u, where, run
         )
         if bad >= 0:
             return start + bad
-        for k in range(segments.shape[0]):
+        for k in range(tracks):
             filled, length = -1, 0
-            for first in range(0, count, BLOCK):
+            for b in range((count + BLOCK - 1) // BLOCK):
+                first = b * BLOCK
                 n = min(BLOCK, count - first)
                 for j in range(n):
                     sheet[0, j] = u[first + j]
-                filled, length = _fill(
-                    sheet, knots, segments[k], where[first : first + n], filled, length
-                )
-                call_sample(address, sheet.ctypes, n)
-                _store(sheet, order, out[start + first : start + first + n, k])
-            if order == 0 and flips and signs[k] < 0.0:
-                for j in range(count):
-                    if flip[j]:
-                        for c in range(4):
-                            out[start + j, k, c] = -out[start + j, k, c]
+                if run[b] < 0:
+                    filled = -1
+                    i = 0
+                    while i < n:
+                        end = i + 1
+                        while end < n and where[first + end] == where[first + i]:
+                            end += 1
+                        _fill(sheet, knots, segments[k], where[first + i], i, end)
+                        i = end
+                elif run[b] != filled or n > length:
+                    _fill(sheet, knots, segments[k], run[b], 0, n)
+                    filled, length = run[b], n
+                call_sample(address, pointer, n)
+                _store(sheet, order, out, start + first, n, k, tracks)
+            if order == 0 and wraps and signs[k] < 0.0:
+                _flip(t[start : start + count], origin, knots[-1], out, start, k, tracks)
     return -1
 
 
 @compiled
-def _locate(knots, closed, origin, slack, t, segment, where, u, flip):
-    """Segment and local parameter of each sample: (last segment, any flip, first bad index)."""
-    last = knots.size - 2
-    period = knots[last + 1]
-    flips = False
-    lo, hi = knots[segment], knots[segment + 1]
-    inside = 0
-    for j in range(t.size):
-        x = t[j] - origin
-        inside += (x >= lo) & (x < hi)
-    if inside == t.size:
-        h = hi - lo
-        for j in range(t.size):
-            u[j] = ((t[j] - origin) - lo) / h
+def _locate(knots, closed, origin, slack, t, segment, u, where, run):
+    """Local parameter and segment of each sample, block by block.
+
+    Returns the last segment, whether any sample lies in another period, and the first bad index.
+    """
+    wraps = False
+    for b in range((t.size + BLOCK - 1) // BLOCK):
+        first = b * BLOCK
+        n = min(BLOCK, t.size - first)
+        lo, hi = knots[segment], knots[segment + 1]
+        inside = 0
+        for j in range(first, first + n):
+            x = t[j] - origin
+            inside += (x >= lo) & (x < hi)
+        if inside == n:
+            h = hi - lo
+            for j in range(first, first + n):
+                u[j] = ((t[j] - origin) - lo) / h
+            run[b] = segment
+            continue
+        run[b] = -1
+        for j in range(first, first + n):
+            x = t[j] - origin
+            if not (x >= 0.0 and x < knots[-1]):
+                if closed and abs(x) < np.inf:
+                    x = _wrapped(x, knots[-1])
+                    wraps = True
+                elif not closed and x >= -slack and x <= knots[-1] + slack:
+                    x = min(max(x, 0.0), knots[-1])
+                else:
+                    return segment, wraps, j
+            if not (x >= knots[segment] and x < knots[segment + 1]):
+                segment = _find(knots, x, segment)
             where[j] = segment
-            flip[j] = False
-        return segment, False, -1
-    for j in range(t.size):
-        x = t[j] - origin
-        odd = False
-        if not (x >= 0.0 and x < period):
-            if closed:
-                if not (abs(x) < np.inf):
-                    return segment, flips, j
-                periods = math.floor(x / period)
-                x = min(max(x - periods * period, 0.0), period)
-                odd = periods % 2.0 == 1.0
-                flips = flips or odd
-            elif x >= -slack and x <= period + slack:
-                x = min(max(x, 0.0), period)
-            else:
-                return segment, flips, j
-        if not (x >= knots[segment] and x < knots[segment + 1]):
-            if segment < last and x >= knots[segment + 1] and x < knots[segment + 2]:
-                segment += 1
-            else:
-                segment = min(np.searchsorted(knots, x, side="right") - 1, last)
-        flip[j] = odd
-        where[j] = segment
-        u[j] = (x - knots[segment]) / (knots[segment + 1] - knots[segment])
-    return segment, flips, -1
+            u[j] = (x - knots[segment]) / (knots[segment + 1] - knots[segment])
+    return segment, wraps, -1
 
 
-@compiled
-def _fill(sheet, knots, segments, where, filled, length):
-    """Constants of the samples' segments into the sheet; what one segment fills is kept."""
-    n = where.size
-    one = where[0] == where[n - 1]
-    if one:
+@inlined
+def _wrapped(x, period):
+    """The time within the first period."""
+    return min(max(x - math.floor(x / period) * period, 0.0), period)
+
+
+@inlined
+def _find(knots, x, segment):
+    """The segment of x: the next one in a sorted sweep, otherwise by bisection."""
+    last = knots.size - 2
+    if segment < last and x >= knots[segment + 1] and x < knots[segment + 2]:
+        return segment + 1
+    low, high = 0, last + 1
+    while high - low > 1:
+        middle = (low + high) >> 1
+        if knots[middle] <= x:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+@inlined
+def _fill(sheet, knots, segments, i, first, end):
+    """The constants of segment i for the samples first ... end - 1 of a block."""
+    rate = 1.0 / (knots[i + 1] - knots[i])
+    for j in range(first, end):
+        sheet[1, j] = rate
+    for c in range(segments.shape[1]):
+        value = segments[i, c]
+        for j in range(first, end):
+            sheet[CONSTANTS + c, j] = value
+
+
+@inlined
+def _store(sheet, order, out, start, n, k, tracks):
+    """The result rows, component first, into out, sample first."""
+    if order == 0 and tracks == 1:  # a constant stride: the stores vectorise
         for j in range(n):
-            one = one and where[j] == where[0]
-    if one:
-        i = where[0]
-        if i == filled and n <= length:
-            return filled, length
-        rate = 1.0 / (knots[i + 1] - knots[i])
-        for j in range(n):
-            sheet[1, j] = rate
-        for c in range(segments.shape[1]):
-            value = segments[i, c]
-            for j in range(n):
-                sheet[CONSTANTS + c, j] = value
-        return i, n
+            at = 4 * (start + j)
+            out[at] = sheet[RESULT, j]
+            out[at + 1] = sheet[RESULT + 1, j]
+            out[at + 2] = sheet[RESULT + 2, j]
+            out[at + 3] = sheet[RESULT + 3, j]
+        return
+    width = 3 if order else 4
     for j in range(n):
-        i = where[j]
-        sheet[1, j] = 1.0 / (knots[i + 1] - knots[i])
-        for c in range(segments.shape[1]):
-            sheet[CONSTANTS + c, j] = segments[i, c]
-    return -1, 0
+        at = width * ((start + j) * tracks + k)
+        for c in range(width):
+            out[at + c] = sheet[RESULT + c, j]
 
 
 @compiled
-def _store(sheet, order, out):
-    """The result rows, component first, into out (n, 4 or 3)."""
-    if order == 0:
-        for j in range(out.shape[0]):
-            out[j, 0] = sheet[RESULT, j]
-            out[j, 1] = sheet[RESULT + 1, j]
-            out[j, 2] = sheet[RESULT + 2, j]
-            out[j, 3] = sheet[RESULT + 3, j]
-    else:
-        for j in range(out.shape[0]):
-            out[j, 0] = sheet[RESULT, j]
-            out[j, 1] = sheet[RESULT + 1, j]
-            out[j, 2] = sheet[RESULT + 2, j]
+def _flip(t, origin, period, out, start, k, tracks):
+    """The sign of samples an odd number of periods away, on a track that returns as -q."""
+    for j in range(t.size):
+        if math.floor((t[j] - origin) / period) % 2.0 == 1.0:
+            at = 4 * ((start + j) * tracks + k)
+            for c in range(4):
+                out[at + c] = -out[at + c]

@@ -46,7 +46,7 @@ def _compiled(curve: SegmentCurve, t: FloatArray, protocol: Protocol) -> Callabl
         segments,
         report,
     )
-    evaluate = (curve.kernels[0].address, k.knots, k.times[0], curve._slack, t, out)
+    evaluate = (curve.kernels[0].address, curve.segment_knots, k.times[0], curve._slack, t, out.reshape(-1))
     loop = _per_frame if protocol == "per-frame" else _solve_once
 
     def generate(repeats: int) -> FloatArray:
@@ -86,7 +86,7 @@ def _per_frame(
     for _ in range(repeats):
         for i in range(t.size):
             call_fit(fit, tracks[0], h, closed, signs[0], parameters, segments[0], report[0])
-            one = out[i : i + 1]
+            one = out[4 * i : 4 * i + 4]
             sample(
                 address, 0, knots, segments, closed, signs, origin, slack, t[i : i + 1], one
             )
