@@ -48,9 +48,7 @@ class CircularBlend(SegmentCurve):
     family = BLEND
     operations = {"circle points per sample": 2, "slerps per sample": 1}
 
-    def _fit(
-        self, keyframes: Keyframes, *, blend: Literal["smooth", "linear"] = "smooth"
-    ) -> None:
+    def _fit(self, keyframes: Keyframes, *, blend: Literal["smooth", "linear"] = "smooth") -> None:
         self.continuity = 2 if blend == "smooth" else 1
         self._solve(FIT, np.array(BLENDS[blend]))
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
+from numba import carray
 
 from quatspline._jit import BLOCK, CONSTANTS, ROWS, fit_kernel, inlined, sample_kernel
 from quatspline.families.chords import SIZE as CHORD
@@ -15,7 +16,7 @@ from quatspline.families.chords import (
     set_point,
     set_velocity,
 )
-from quatspline.families.segments import Family, SegmentCurve, carray
+from quatspline.families.segments import Family, SegmentCurve
 from quatspline.families.tangents import keyframe
 from quatspline.keyframes import Keyframes
 from quatspline.options import Count

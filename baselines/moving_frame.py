@@ -25,6 +25,7 @@ import math
 from typing import Any, Literal
 
 import numpy as np
+from numba import carray
 
 from quatspline import quaternion
 from quatspline._jit import (
@@ -37,7 +38,7 @@ from quatspline._jit import (
     inlined,
     sample_kernel,
 )
-from quatspline.families.segments import Family, SegmentCurve, carray
+from quatspline.families.segments import Family, SegmentCurve
 from quatspline.keyframes import Keyframes
 from quatspline.primitives import cross, mul
 from quatspline.quaternion import FloatArray

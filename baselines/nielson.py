@@ -164,14 +164,19 @@ def _residual(d, first, last, weights, sign, q):
     worst = 0.0
     for i in range(first, last):
         miss = _miss(d, i, weights, sign, q)
-        worst = max(worst, miss) if miss == miss else math.inf  # noqa: PLR0124 - NaN
+        worst = max(worst, miss) if miss == miss else math.inf
     return worst
 
 
 @compiled
 def _iterate(q, weights, closed, sign, parameters, report):
     """The published iteration from d = q; fills the report."""
-    jacobi, by_residual, tolerance, limit = parameters[0], parameters[1], parameters[2], parameters[3]
+    jacobi, by_residual, tolerance, limit = (
+        parameters[0],
+        parameters[1],
+        parameters[2],
+        parameters[3],
+    )
     n = q.shape[0]
     first, last = (0, n) if closed else (1, n - 1)
     d, old = q.copy(), q.copy()
@@ -207,7 +212,6 @@ def FIT(q, h, closed, sign, parameters, segments, report):
     n = q.shape[0]
     for i in range(h.size):
         j = (i + 1) % n
-        s = 1.0 if i + 1 < n else sign
         p0 = _point(q, i, sign)
         p3 = _point(q, i + 1, sign)
         a, b, c = _point(d, i, sign), _point(d, i + 1, sign), _point(d, i, sign)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from numba import carray
+
 from quatspline._jit import BLOCK, ROWS, fit_kernel, sample_kernel
 from quatspline.families.chords import (
     SIZE,
@@ -10,7 +12,7 @@ from quatspline.families.chords import (
     set_point,
     set_velocity,
 )
-from quatspline.families.segments import Family, SegmentCurve, carray
+from quatspline.families.segments import Family, SegmentCurve
 from quatspline.families.tangents import keyframe
 from quatspline.keyframes import Keyframes
 

@@ -60,7 +60,11 @@ def _measured(case: str, name: str, times: FloatArray, keyframes: FloatArray) ->
     try:
         curve = scheme(name)(times, keyframes)
         table = jumps(curve)
-        more = {"measured_k": measured_continuity(table), "claimed_k": curve.continuity, **speeds(curve)}
+        more = {
+            "measured_k": measured_continuity(table),
+            "claimed_k": curve.continuity,
+            **speeds(curve),
+        }
     except Exception as error:  # a scheme that does not apply or fails is a row with its reason
         table = pd.DataFrame([{"order": 0, "failure": f"{type(error).__name__}: {error}"}])
         more = {}

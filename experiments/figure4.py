@@ -5,7 +5,7 @@ from matplotlib.figure import Figure
 
 from quatspline.report.motions import four_panels, motion_table
 from quatspline.running import Run
-from quatspline.trajectories.paper import TEAPOT, RECONSTRUCTED
+from quatspline.trajectories.paper import RECONSTRUCTED, TEAPOT
 
 TITLE = "Figure 4: the teapot"
 PAPER = True

@@ -1,5 +1,7 @@
 """How many iterations random keyframes take, against the step angle: what two cases cannot show."""
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
@@ -25,7 +27,15 @@ SOLVERS = (
     ("kim", "fixed-point"),
     ("kim", "newton"),
 )
-QUANTILES = {"least": 0.0, "q05": 0.05, "q25": 0.25, "median": 0.5, "q75": 0.75, "q95": 0.95, "most": 1.0}
+QUANTILES = {
+    "least": 0.0,
+    "q05": 0.05,
+    "q25": 0.25,
+    "median": 0.5,
+    "q75": 0.75,
+    "q95": 0.95,
+    "most": 1.0,
+}
 
 
 def measure(run: Run) -> pd.DataFrame:
@@ -45,12 +55,13 @@ def measure(run: Run) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def _solved(data: str, keyframes: FloatArray, closed: bool, degrees: float) -> list[dict[str, object]]:
+def _solved(
+    data: str, keyframes: FloatArray, closed: bool, degrees: float
+) -> list[dict[str, object]]:
     rows = []
     for name, method in SOLVERS:
-        curve = scheme(name)(
-            None, keyframes, closed=closed, method=method, on_failure="return", **SOLVE
-        )
+        options: dict[str, Any] = {"method": method, "on_failure": "return", **SOLVE}
+        curve = scheme(name)(None, keyframes, closed=closed, **options)
         report = curve.solve_report
         assert report is not None
         counts = report.iterations[report.converged]
@@ -84,12 +95,16 @@ def draw(table: pd.DataFrame) -> Figure:
             ax.fill_between(picked["step_degrees"], *band, color=color, alpha=0.15, lw=0)
         own = table[(table.data == f"{case} (reconstructed)") & (table.method == "jacobi")]
         ax.axhline(mark, color="black", lw=0.7, ls=":")
-        ax.annotate(f"the paper's {mark}", (10, mark), (0, 2), textcoords="offset points", fontsize=7.5)
+        ax.annotate(
+            f"the paper's {mark}", (10, mark), (0, 2), textcoords="offset points", fontsize=7.5
+        )
         ax.plot(
             own["step_degrees"], own["median"], "k*", ms=8, label="the reconstructed case (jacobi)"
         )
         ax.set(title=data, xlabel="step angle (degrees)", yscale="log")
-        ax.set_yticks([2, 4, 8, 16, 40, 100, 400, 1000], ["2", "4", "8", "16", "40", "100", "400", "1000"])
+        ax.set_yticks(
+            [2, 4, 8, 16, 40, 100, 400, 1000], ["2", "4", "8", "16", "40", "100", "400", "1000"]
+        )
         ax.minorticks_off()
     panels[0, 0].set_ylabel("iterations to a change of 1e-6")
     style.letters(panels[0])

@@ -1,6 +1,6 @@
 """Table 1 of the paper: iterations and seconds, under its own protocol and under the other one."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -67,9 +67,7 @@ def _group(
     return _timed(run, case.name, case, row, protocol, generators)
 
 
-def _rendering(
-    case: PaperCase, t: Any, generate: Callable[[int], Any]
-) -> Callable[[int], Any]:
+def _rendering(case: PaperCase, t: Any, generate: Callable[[int], Any]) -> Callable[[int], Any]:
     from quatspline.report.motions import render
 
     def contender(repeats: int) -> None:
@@ -100,7 +98,7 @@ def _timed(
     case: PaperCase,
     row: Row,
     protocol: Protocol,
-    contenders: dict[str, Contender],
+    contenders: Mapping[str, Contender],
 ) -> pd.DataFrame:
     rounds = RENDERED_ROUNDS if row.rendered else ROUNDS
     timings = interleaved(contenders, 1 if run.quick else rounds, run.seed)

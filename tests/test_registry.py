@@ -254,20 +254,17 @@ print(json.dumps([name for name in heavy if name in sys.modules]))
     assert json.loads(python(code)) == []
 
 
-def test_listing_schemes_needs_no_figures() -> None:
+def test_listing_schemes_imports_no_peer() -> None:
     code = """
 import sys, json, quatspline
 quatspline.schemes()
-heavy = ["scipy.spatial", "scipy.interpolate", "matplotlib", "pandas"]
-heavy += ["splines", "interpolatepy", "rowan", "quaternionic"]
+heavy = ["matplotlib", "pandas", "splines", "interpolatepy", "rowan", "quaternionic"]
 print(json.dumps([name for name in heavy if name in sys.modules]))
 """
     assert json.loads(python(code)) == []
 
 
-@pytest.mark.parametrize(
-    "first", ["qs.schemes()", "qs.QuarticSpline", "qs.Curve", "qs.build", "qs.SolveReport"]
-)
+@pytest.mark.parametrize("first", ["qs.schemes()", "qs.QuarticSpline", "qs.Curve"])
 def test_names_stay_what_they_are(first: str) -> None:
     """The subpackage `schemes` does not take the place of the function, whatever comes first."""
     code = f"""

@@ -86,12 +86,13 @@ IMPORT = re.compile(r"^(?:from|import) (quatspline\.[\w.]+)", re.MULTILINE)
 
 def _cached(function: Callable[..., Any], decorate: Callable[[], Any]) -> Any:
     """Run a numba decorator with the cache in our folder, leaving numba's own setting alone."""
-    before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = cache_folder(Path(function.__code__.co_filename))
+    config: Any = numba.config
+    before = config.CACHE_DIR
+    config.CACHE_DIR = cache_folder(Path(function.__code__.co_filename))
     try:
         return decorate()
     finally:
-        numba.config.CACHE_DIR = before
+        config.CACHE_DIR = before
 
 
 def inlined(function: Callable[..., Any]) -> Any:
@@ -131,7 +132,9 @@ _vector = types.Array(types.float64, 1, "C")
 _matrix = types.Array(types.float64, 2, "C")
 
 SAMPLE_SIGNATURE = types.void(_sheet, types.intp)
-FIT_SIGNATURE = types.void(_matrix, _vector, types.boolean, types.float64, _vector, _matrix, _vector)
+FIT_SIGNATURE = types.void(
+    _matrix, _vector, types.boolean, types.float64, _vector, _matrix, _vector
+)
 
 
 def sample_kernel(function: Callable[..., Any]) -> Kernel:
@@ -159,7 +162,7 @@ def call_sample(typing: Any, address: Any, sheet: Any, count: Any) -> Any:
 
 
 @intrinsic
-def call_fit(  # noqa: PLR0913 - the kernel's own arguments
+def call_fit(
     typing: Any,
     address: Any,
     q: Any,

@@ -104,17 +104,17 @@ class Curve(abc.ABC):
     """Interior approximation order on smooth motion, uniform knots."""
     support: int | None
     """Keyframes that shape one segment; None means all."""
-    constant_rate: Literal["everywhere", "interior", "no"]
-    """Where keyframes of a constant spin give that spin."""
+    constant_rate: str
+    """Where keyframes of a constant spin give that spin: "everywhere", "interior" or "no"."""
     non_uniform: ClassVar[bool] = True
     closable: ClassVar[bool] = True
     iterative: ClassVar[bool] = False
     peer: ClassVar[str | None] = None
     """The third-party distribution that it wraps."""
     min_keyframes: ClassVar[int] = 2
-    orders: ClassVar[tuple[int, ...]] = (0, 1, 2)
+    orders: tuple[int, ...] = (0, 1, 2)
     """Orders that a call offers; a peer may lack some."""
-    operations: ClassVar[dict[str, float]] = {}
+    operations: dict[str, float] = {}
     """Counts that no machine changes: e.g. {"exps per sample": 3, "logs per keyframe": 1}."""
     departs: ClassVar[dict[str, str]] = {}
     """Conformance checks that a peer, run as published, does not pass, each with its reason."""
@@ -205,7 +205,11 @@ class Curve(abc.ABC):
     def numeric_orders(self) -> tuple[int, ...]:
         """Orders whose values come from the shared numerical fallback."""
         cls = type(self)
-        own = (True, cls._velocity is not Curve._velocity, cls._acceleration is not Curve._acceleration)
+        own = (
+            True,
+            cls._velocity is not Curve._velocity,
+            cls._acceleration is not Curve._acceleration,
+        )
         return tuple(k for k in self.orders if not own[k])
 
     def __call__(
@@ -305,7 +309,9 @@ class Curve(abc.ABC):
                 type(self).from_keyframes(keyframes.track(k), **self._options)
                 for k in range(keyframes.tracks.shape[0])
             )
-            self.solve_report = _joined([p.solve_report for p in self._parts], keyframes.track_shape)
+            self.solve_report = _joined(
+                [p.solve_report for p in self._parts], keyframes.track_shape
+            )
 
     def _evaluate(self, samples: FloatArray, order: int, out: FloatArray, threads: int) -> None:
         """Fill out (m, K, 4 or 3) at the samples."""
@@ -365,7 +371,9 @@ class Curve(abc.ABC):
         if on_failure == "raise" and not np.all(report.converged):
             k = int(np.argmin(np.reshape(report.converged, -1)))
             track = f" on track {k}" if self._keyframes.track_shape else ""
-            picked = [np.reshape(x, -1)[k] for x in (report.iterations, report.change, report.residual)]
+            picked = [
+                np.reshape(x, -1)[k] for x in (report.iterations, report.change, report.residual)
+            ]
             raise ConvergenceError(
                 f"{self.name} ({report.method}) did not converge{track}: after {picked[0]} iterations "
                 f"change {picked[1]:.3g}, residual {picked[2]:.3g} rad, tolerance {report.tolerance:g}",

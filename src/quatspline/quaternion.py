@@ -2,7 +2,8 @@
 
 All functions broadcast their leading axes and return float64.  Logarithms are half rotation
 vectors: ``log(q) = theta n`` for ``q = cos theta + n sin theta`` with 0 <= theta <= pi.  Angles come
-from atan2, never from acos, so that small rotations keep their relative accuracy (docs/mathematics/notation.md).  Other forms of rotations are scipy's business:
+from atan2, never from acos, so that small rotations keep their relative accuracy (see
+docs/mathematics/notation.md).  Other forms of rotations are scipy's business:
 ``scipy.spatial.transform.Rotation.from_quat(q, scalar_first=True)``.
 """
 

@@ -6,8 +6,10 @@ p(x) = a cos(x theta) + b' sin(x theta), at constant speed theta in x.
 
 from __future__ import annotations
 
+from numba import carray
+
 from quatspline._jit import BLOCK, CONSTANTS, RESULT, ROWS, Kernel, inlined, sample_kernel
-from quatspline.families.segments import Family, carray
+from quatspline.families.segments import Family
 from quatspline.primitives import between, log_between, mul, polar, sincos, sincos_near
 
 SIZE = 9
@@ -62,7 +64,7 @@ def _orientation(near: bool) -> Kernel:
 
 
 @sample_kernel
-def VELOCITY(sheet, n):  # noqa: N802 - a constant
+def VELOCITY(sheet, n):
     """omega = 2 theta n / h, n = vec(a^-1 b')."""
     s = carray(sheet, (ROWS, BLOCK))
     c = CONSTANTS
@@ -84,7 +86,7 @@ def VELOCITY(sheet, n):  # noqa: N802 - a constant
 
 
 @sample_kernel
-def ACCELERATION(sheet, n):  # noqa: N802 - a constant
+def ACCELERATION(sheet, n):
     """Constant rate: alpha = 0."""
     s = carray(sheet, (ROWS, BLOCK))
     for j in range(n):

@@ -12,9 +12,11 @@ from __future__ import annotations
 
 import math
 
+from numba import carray
+
 from quatspline._jit import BLOCK, CONSTANTS, RESULT, ROWS, compiled, inlined, sample_kernel
 from quatspline.families.nested import set_rate, slerp_jet
-from quatspline.families.segments import Family, carray
+from quatspline.families.segments import Family
 from quatspline.primitives import sincos, slerp
 
 # notation: the constants of a circle are P, X, Y (12) and the angle's coefficients from u^0 to u^2.
@@ -97,7 +99,7 @@ def _result(s, j, q):
 
 
 @sample_kernel
-def BIARC_ORIENTATION(sheet, n):  # noqa: N802 - a constant
+def BIARC_ORIENTATION(sheet, n):
     """The first arc before the split, the second from there on."""
     s = carray(sheet, (ROWS, BLOCK))
     for j in range(n):
@@ -117,7 +119,7 @@ def _biarc_jet(s, j):
 
 
 @sample_kernel
-def BIARC_VELOCITY(sheet, n):  # noqa: N802 - a constant
+def BIARC_VELOCITY(sheet, n):
     """omega of the biarc."""
     s = carray(sheet, (ROWS, BLOCK))
     for j in range(n):
@@ -126,7 +128,7 @@ def BIARC_VELOCITY(sheet, n):  # noqa: N802 - a constant
 
 
 @sample_kernel
-def BIARC_ACCELERATION(sheet, n):  # noqa: N802 - a constant
+def BIARC_ACCELERATION(sheet, n):
     """alpha of the biarc, from the right at its joint."""
     s = carray(sheet, (ROWS, BLOCK))
     for j in range(n):
@@ -135,7 +137,7 @@ def BIARC_ACCELERATION(sheet, n):  # noqa: N802 - a constant
 
 
 @sample_kernel
-def BLEND_ORIENTATION(sheet, n):  # noqa: N802 - a constant
+def BLEND_ORIENTATION(sheet, n):
     """slerp(p_0(u), p_1(u), f(u))."""
     s = carray(sheet, (ROWS, BLOCK))
     for j in range(n):
@@ -157,7 +159,7 @@ def _blend_jet(s, j):
 
 
 @sample_kernel
-def BLEND_VELOCITY(sheet, n):  # noqa: N802 - a constant
+def BLEND_VELOCITY(sheet, n):
     """omega of the blend."""
     s = carray(sheet, (ROWS, BLOCK))
     for j in range(n):
@@ -166,7 +168,7 @@ def BLEND_VELOCITY(sheet, n):  # noqa: N802 - a constant
 
 
 @sample_kernel
-def BLEND_ACCELERATION(sheet, n):  # noqa: N802 - a constant
+def BLEND_ACCELERATION(sheet, n):
     """alpha of the blend."""
     s = carray(sheet, (ROWS, BLOCK))
     for j in range(n):

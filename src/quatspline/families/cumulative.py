@@ -11,6 +11,8 @@ the factors, each turning what stands to its left into its own frame [kim1995gen
 
 from __future__ import annotations
 
+from numba import carray
+
 from quatspline._jit import (
     BLOCK,
     CONSTANTS,
@@ -20,7 +22,7 @@ from quatspline._jit import (
     inlined,
     sample_kernel,
 )
-from quatspline.families.segments import Family, carray
+from quatspline.families.segments import Family
 from quatspline.primitives import cross, mul, polar, sincos, sincos_near, unrotate
 
 # notation: the constants of a segment are Q_0 (4), Q_0 n_1 (4), n_1, n_2, n_3 (9), and the six

@@ -68,9 +68,7 @@ def _bound(c):
 
 @inlined
 def _set(segments, i, k, v, c):
-    set_turn(
-        segments, i, k, v[0], v[1], v[2], v[3], c[0], c[1], c[2], c[3], c[4], c[5]
-    )
+    set_turn(segments, i, k, v[0], v[1], v[2], v[3], c[0], c[1], c[2], c[3], c[4], c[5])
 
 
 @fit_kernel

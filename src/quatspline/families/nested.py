@@ -17,10 +17,12 @@ from __future__ import annotations
 
 import math
 
+from numba import carray
+
 from quatspline._jit import BLOCK, CONSTANTS, RESULT, ROWS, inlined, sample_kernel
 from quatspline.families.arcs import SIZE as ARC_SIZE
 from quatspline.families.arcs import along
-from quatspline.families.segments import Family, carray
+from quatspline.families.segments import Family
 from quatspline.primitives import (
     S1,
     S2,

@@ -38,7 +38,7 @@ class PeerCurve(Curve):
     """A curve that a third-party library evaluates; its warnings stay inside."""
 
     # What a library does not publish (order, support, constant rate) is what we measured.
-    orders = (0,)
+    orders: tuple[int, ...] = (0,)
 
     def _build(self, keyframes: Keyframes, given: dict[str, Any]) -> None:
         with quiet():

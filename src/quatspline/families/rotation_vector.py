@@ -19,10 +19,12 @@ from __future__ import annotations
 
 import math
 
+from numba import carray
+
 from quatspline import primitives as sines
 from quatspline._jit import BLOCK, CONSTANTS, RESULT, ROWS, Kernel, inlined, sample_kernel
 from quatspline.families.cumulative import hermite
-from quatspline.families.segments import Family, carray
+from quatspline.families.segments import Family
 from quatspline.primitives import cross, mul, sinc, sinc_near
 
 # notation: the constants of a segment are Q_0 (4), then for each component of phi the coefficients

@@ -11,10 +11,10 @@ from __future__ import annotations
 import math
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import ClassVar
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
-from numba import carray  # noqa: F401 - kernels import it from here
 
 from quatspline._jit import (
     BLOCK,
@@ -28,7 +28,6 @@ from quatspline._jit import (
     inlined,
 )
 from quatspline.curve import WRONG_FIXED_POINT, Curve, SolveReport
-from quatspline.keyframes import Keyframes
 from quatspline.primitives import NEAR
 from quatspline.quaternion import FloatArray
 
@@ -61,14 +60,16 @@ class Family:
 class SegmentCurve(Curve):
     """A curve of segments with constants: see the module; subclasses fit, this evaluates."""
 
-    family: ClassVar[Family]
+    family: Family
     batched = True
 
     def _solve(self, kernel: Kernel, parameters: FloatArray | None = None) -> FloatArray:
         """Run a fit kernel over all tracks; returns its report, (K, 4)."""
         frames = self._keyframes
         self.fit_kernel = kernel
-        self.parameters = np.zeros(1) if parameters is None else np.ascontiguousarray(parameters, float)
+        self.parameters = (
+            np.zeros(1) if parameters is None else np.ascontiguousarray(parameters, float)
+        )
         shape = (frames.tracks.shape[0], frames.spacings.shape[0], self.family.constants)
         segments = np.empty(shape)
         report = np.zeros((shape[0], 4))
@@ -110,11 +111,10 @@ class SegmentCurve(Curve):
             report[:, RESIDUAL],
             met & right,
         ]
-        if shape:
-            values = [column.reshape(shape) for column in columns]
-        else:
-            values = [column[0].item() for column in columns]
-        self._conclude(SolveReport(method, stop, *values, tolerance), on_failure)
+        values: list[Any] = [c.reshape(shape) if shape else c[0].item() for c in columns]
+        iterations, change, residual, converged = values
+        solved = SolveReport(method, stop, iterations, change, residual, converged, tolerance)
+        self._conclude(solved, on_failure)
 
     def _evaluate(self, samples: FloatArray, order: int, out: FloatArray, threads: int) -> None:
         t = samples.reshape(-1)
@@ -133,7 +133,7 @@ class SegmentCurve(Curve):
         with ThreadPoolExecutor(count) as pool:
             runs = [
                 pool.submit(self._sample, t[a:b], order, out[a:b].reshape(-1), self._first)
-                for a, b in zip(edges, edges[1:], strict=False)
+                for a, b in pairwise(edges)
             ]
             found = [(run.result(), a) for run, a in zip(runs, edges, strict=False)]
         return min((index + a for index, a in found if index >= 0), default=-1)

@@ -18,8 +18,10 @@ from __future__ import annotations
 
 import math
 
+from numba import carray
+
 from quatspline._jit import BLOCK, CONSTANTS, RESULT, ROWS, compiled, inlined, sample_kernel
-from quatspline.families.segments import Family, carray
+from quatspline.families.segments import Family
 from quatspline.primitives import cross, exp, log_between, mul
 
 # notation: the constants of a segment are d_{i-1} ... d_{i+2} (16), m_i, the coefficients from u^0 to
@@ -41,9 +43,34 @@ CLOSE = 1e-8
 def curvature(r):
     """k = (1 - x cot x)/x^2 of r = x^2, of which Jl^-1(2 l) = I - [l] + k [l]^2 is made, x = |l|."""
     if r < SERIES:
-        return 1 / 3 + r * (1 / 45 + r * (2 / 945 + r * (1 / 4725 + r * (2 / 93555 + r * (
-            1382 / 638512875 + r * (4 / 18243225 + r * (3617 / 162820783125 + r * (
-                87734 / 38979295480125 + r * (349222 / 1531329465290625)))))))))
+        return 1 / 3 + r * (
+            1 / 45
+            + r
+            * (
+                2 / 945
+                + r
+                * (
+                    1 / 4725
+                    + r
+                    * (
+                        2 / 93555
+                        + r
+                        * (
+                            1382 / 638512875
+                            + r
+                            * (
+                                4 / 18243225
+                                + r
+                                * (
+                                    3617 / 162820783125
+                                    + r * (87734 / 38979295480125 + r * (349222 / 1531329465290625))
+                                )
+                            )
+                        )
+                    )
+                )
+            )
+        )
     x = math.sqrt(r)
     return (1.0 - x / math.tan(x)) / r
 
@@ -52,9 +79,30 @@ def curvature(r):
 def _slope(r, k):
     """dk/dr, given k = `curvature` of r."""
     if r < SERIES:
-        return 1 / 45 + r * (4 / 945 + r * (1 / 1575 + r * (8 / 93555 + r * (1382 / 127702575 + r * (
-            8 / 6081075 + r * (3617 / 23260111875 + r * (701872 / 38979295480125 + r * (
-                349222 / 170147718365625))))))))
+        return 1 / 45 + r * (
+            4 / 945
+            + r
+            * (
+                1 / 1575
+                + r
+                * (
+                    8 / 93555
+                    + r
+                    * (
+                        1382 / 127702575
+                        + r
+                        * (
+                            8 / 6081075
+                            + r
+                            * (
+                                3617 / 23260111875
+                                + r * (701872 / 38979295480125 + r * (349222 / 170147718365625))
+                            )
+                        )
+                    )
+                )
+            )
+        )
     sine = math.sin(math.sqrt(r))
     # x cot x = 1 - k r
     return (r / (sine * sine) - 1.0 - k * r) / (2.0 * r * r)
@@ -175,7 +223,7 @@ def _controls(s, j):
 
 
 @sample_kernel
-def ORIENTATION(sheet, n):  # noqa: N802 - a constant
+def ORIENTATION(sheet, n):
     """The mean of the segment's controls."""
     s = carray(sheet, (ROWS, BLOCK))
     for j in range(n):
@@ -188,7 +236,7 @@ def ORIENTATION(sheet, n):  # noqa: N802 - a constant
 
 
 @sample_kernel
-def VELOCITY(sheet, n):  # noqa: N802 - a constant
+def VELOCITY(sheet, n):
     """(2)."""
     s = carray(sheet, (ROWS, BLOCK))
     for j in range(n):
@@ -224,7 +272,7 @@ def _bent(l, v):
 
 
 @sample_kernel
-def ACCELERATION(sheet, n):  # noqa: N802 - a constant
+def ACCELERATION(sheet, n):
     """(3)."""
     s = carray(sheet, (ROWS, BLOCK))
     for j in range(n):

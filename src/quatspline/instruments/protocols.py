@@ -32,7 +32,9 @@ def frames(
     return _interpreted(scheme, keyframes, t, protocol, options)
 
 
-def _compiled(curve: SegmentCurve, t: FloatArray, protocol: Protocol) -> Callable[[int], FloatArray]:
+def _compiled(
+    curve: SegmentCurve, t: FloatArray, protocol: Protocol
+) -> Callable[[int], FloatArray]:
     k = curve.keyframes
     out = np.empty((t.size, 1, 4))
     segments, report = np.empty_like(curve.segments), np.zeros((1, 4))
@@ -46,7 +48,14 @@ def _compiled(curve: SegmentCurve, t: FloatArray, protocol: Protocol) -> Callabl
         segments,
         report,
     )
-    evaluate = (curve.kernels[0].address, curve.segment_knots, k.times[0], curve._slack, t, out.reshape(-1))
+    evaluate = (
+        curve.kernels[0].address,
+        curve.segment_knots,
+        k.times[0],
+        curve._slack,
+        t,
+        out.reshape(-1),
+    )
     loop = _per_frame if protocol == "per-frame" else _solve_once
 
     def generate(repeats: int) -> FloatArray:
@@ -87,9 +96,7 @@ def _per_frame(
         for i in range(t.size):
             call_fit(fit, tracks[0], h, closed, signs[0], parameters, segments[0], report[0])
             one = out[4 * i : 4 * i + 4]
-            sample(
-                address, 0, knots, segments, closed, signs, origin, slack, t[i : i + 1], one
-            )
+            sample(address, 0, knots, segments, closed, signs, origin, slack, t[i : i + 1], one)
 
 
 @compiled

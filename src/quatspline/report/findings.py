@@ -89,8 +89,12 @@ ROWS = (("key", 101), ("key", 201), ("teapot", 150), ("teapot", 300))
 
 
 def _iterations(cell: Ledger) -> str:
-    key = cell("table1", "iterations", case="key", frames=101, scheme="nielson", protocol="per-frame")
-    pot = cell("table1", "iterations", case="teapot", frames=150, scheme="nielson", protocol="per-frame")
+    key = cell(
+        "table1", "iterations", case="key", frames=101, scheme="nielson", protocol="per-frame"
+    )
+    pot = cell(
+        "table1", "iterations", case="teapot", frames=150, scheme="nielson", protocol="per-frame"
+    )
     return (
         f"Nielson's iteration takes {key:d} steps for the key and {pot:d} for the teapot, as in the paper; the "
         "keyframes are reconstructed so that it does, for the paper prints none."
@@ -99,14 +103,23 @@ def _iterations(cell: Ledger) -> str:
 
 def _ratios(cell: Ledger, scheme: str, protocol: str) -> list[Cell]:
     return [
-        cell("table1", "ratio_to_quartic", case=case, frames=frames, scheme=scheme, protocol=protocol)
+        cell(
+            "table1", "ratio_to_quartic", case=case, frames=frames, scheme=scheme, protocol=protocol
+        )
         for case, frames in ROWS
     ]
 
 
 def _protocol(cell: Ledger) -> str:
     paper = [
-        cell("table1", "paper_ratio", case=case, frames=frames, scheme="nielson", protocol="per-frame")
+        cell(
+            "table1",
+            "paper_ratio",
+            case=case,
+            frames=frames,
+            scheme="nielson",
+            protocol="per-frame",
+        )
         for case, frames in ROWS
     ]
     slow, fast = (_ratios(cell, "nielson", p) for p in ("per-frame", "solve-once"))
@@ -119,7 +132,9 @@ def _protocol(cell: Ledger) -> str:
 
 def _newton(cell: Ledger) -> str:
     slow, fast = (_ratios(cell, "kim", p) for p in ("per-frame", "solve-once"))
-    steps = cell("table1", "iterations", case="teapot", frames=150, scheme="kim", protocol="per-frame")
+    steps = cell(
+        "table1", "iterations", case="teapot", frames=150, scheme="kim", protocol="per-frame"
+    )
     return (
         f"The cumulative B-spline of Kim, Kim & Shin, solved by Newton's method ({steps:d} steps for the teapot), "
         f"costs {_range(slow)} times the quartic per frame and {_range(fast)} times solved once."
@@ -143,13 +158,17 @@ def _jump(cell: Ledger) -> str:
 
 def _cubic_fall(cell: Ledger) -> str:
     sizes = [
-        cell("continuity", "jump", scheme="nielson", quantity="alpha", case=f"smooth motion, {n} keyframes")
+        cell(
+            "continuity",
+            "jump",
+            scheme="nielson",
+            quantity="alpha",
+            case=f"smooth motion, {n} keyframes",
+        )
         for n in (41, 81)
     ]
     fall = sizes[0].value / sizes[1].value
-    return (
-        f"On smooth motion that jump falls by a factor {fall:.1f} when the keyframe spacing is halved (third order)."
-    )
+    return f"On smooth motion that jump falls by a factor {fall:.1f} when the keyframe spacing is halved (third order)."
 
 
 FINDINGS: tuple[tuple[str, Callable[[Ledger], str]], ...] = (

@@ -26,7 +26,10 @@ def findings_block() -> str:
 
 def schemes_block() -> str:
     """The table of schemes and what they claim."""
-    head = ["| scheme | what it is | C^k | order | shaped by | from |", "| --- | --- | ---: | ---: | --- | --- |"]
+    head = [
+        "| scheme | what it is | C^k | order | shaped by | from |",
+        "| --- | --- | ---: | ---: | --- | --- |",
+    ]
     rows = []
     for name, item in found().items():
         s = item.scheme
@@ -45,8 +48,10 @@ BLOCKS: dict[str, Callable[[], str]] = {"findings": findings_block, "schemes": s
 def renewed(text: str) -> str:
     """The README's text with every generated block written anew."""
     for name, block in BLOCKS.items():
-        pattern = re.compile(rf"(<!-- begin {name} -->\n).*?(<!-- end {name} -->)", re.DOTALL)
-        text = pattern.sub(lambda m, body=block(): f"{m[1]}{body}\n{m[2]}", text)
+        begin, end = f"<!-- begin {name} -->\n", f"<!-- end {name} -->"
+        if begin in text:
+            before, rest = text.split(begin, 1)
+            text = f"{before}{begin}{block()}\n{end}{rest.split(end, 1)[1]}"
     return text
 
 

@@ -33,7 +33,7 @@ OWN: dict[str, dict[str, Any]] = {
 }
 """Schemes that every figure tells apart at a glance; all others get theirs from their name."""
 
-RC: dict[str, Any] = {
+RC: Any = {
     "figure.dpi": 150,
     "savefig.facecolor": "white",
     "font.family": "serif",
