@@ -239,9 +239,9 @@ def _locate(knots, closed, origin, slack, t, segment, u, where, run):
             x = t[j] - origin
             inside += (x >= lo) & (x < hi)
         if inside == n:
-            h = hi - lo
+            rate = 1.0 / (hi - lo)  # a product in both branches: whole and split blocks agree
             for j in range(first, first + n):
-                u[j] = ((t[j] - origin) - lo) / h
+                u[j] = ((t[j] - origin) - lo) * rate
             run[b] = segment
             continue
         run[b] = -1
@@ -258,7 +258,7 @@ def _locate(knots, closed, origin, slack, t, segment, u, where, run):
             if not (x >= knots[segment] and x < knots[segment + 1]):
                 segment = _find(knots, x, segment)
             where[j] = segment
-            u[j] = (x - knots[segment]) / (knots[segment + 1] - knots[segment])
+            u[j] = (x - knots[segment]) * (1.0 / (knots[segment + 1] - knots[segment]))
     return segment, wraps, -1
 
 
