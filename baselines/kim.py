@@ -67,15 +67,6 @@ BEFORE, AFTER, WHOLE = 0, 3, 6
 LOWER, OWN, UPPER, COLUMNS = 0, 9, 18, 64
 """Rows of a sheet of Newton's blocks, so many columns at a time."""
 
-FAR = 3.2
-"""Squared half angle from which `sinc_near` no longer serves."""
-
-BEFORE, AFTER, WHOLE = 0, 3, 6
-"""Rows of the jets (s, c, b) of m_k w_k, p_k w_{k+1} and w_{k+1}."""
-
-LOWER, OWN, UPPER, COLUMNS = 0, 9, 18, 64
-"""Rows of a sheet of Newton's blocks, so many columns at a time."""
-
 CAP = 0.8
 """Largest half angle by which one Newton update may turn an increment."""
 
@@ -86,7 +77,6 @@ SHORTEST = 1e-3
 STAGE = 40
 """Updates after which a descent counts as stalled: those that succeed need 4 to 10."""
 
-LEAST_GROWTH = 1.0 / 256.0
 LEAST_GROWTH = 1.0 / 256.0
 LOOSE = 1e-5
 """Tolerance of the homotopy's inner stages."""
@@ -108,12 +98,16 @@ def set_jet(s, c, b, k, z):
 
 
 @compiled
-def far_jet(jets, first, k, z):
-    """`set_jet` for any z."""
-    s, c = sinc(z)
-    jets[first, k], jets[first + 1, k], jets[first + 2, k] = s, c, (1.0 - s * c) / max(z, 1e-3)
-    if z < 1e-3:
-        jets[first + 2, k] = 2.0 / 3.0
+def set_far_jets(jets, m, p, j, size):
+    """`set_jet` of the three multiples of w_j for any size = |w_j|^2."""
+    for first in range(BEFORE, WHOLE + 1, 3):
+        k = j if first == BEFORE else j - 1
+        if k >= 0 and k < m.size:
+            factor = m[k] if first == BEFORE else p[k] if first == AFTER else 1.0
+            z = factor * factor * size
+            s, c = sinc(z)
+            jets[first, k], jets[first + 1, k] = s, c
+            jets[first + 2, k] = 2.0 / 3.0 if z < 1e-6 else (1.0 - s * c) / z
 
 
 @compiled
@@ -136,11 +130,7 @@ def set_jets(m, p, w, jets):
         set_jet(s, c, b, k, size[k + 1])
     for j in range(n + 1):
         if not size[j] < FAR:
-            if j < n:
-                far_jet(jets, BEFORE, j, m[j] * m[j] * size[j])
-            if j > 0:
-                far_jet(jets, AFTER, j - 1, p[j - 1] * p[j - 1] * size[j])
-                far_jet(jets, WHOLE, j - 1, size[j])
+            set_far_jets(jets, m, p, j, size[j])
 
 
 @compiled
@@ -538,7 +528,7 @@ def FIT(q, h, closed, sign, parameters, segments, report):
             break
         # What is written misses by more than equation (2) did: ask (2) for more.
         more, _, change, met, side = descend(
-            problem, w, controls, 0.1 * tolerance, False, limit - updates
+            problem, w, controls, 0.1 * tolerance, by_change, limit - updates
         )
         updates += more
         if more == 0:
@@ -591,7 +581,7 @@ class Kim(SegmentCurve):
         parameters[:, METHOD] = method == "fixed-point"
         parameters[:, BY_CHANGE] = stop == "change"
         parameters[:, TOLERANCE] = tolerance
-        parameters[:, LIMIT] = max_iterations or LIMITS[method]
+        parameters[:, LIMIT] = min(max_iterations or LIMITS[method], 2**53)
         parameters[:, CLAMPED] = ends == "clamped"
         given = {"start_velocity": start_velocity, "end_velocity": end_velocity}
         for side, (name, velocity) in enumerate(given.items()):
