@@ -43,6 +43,7 @@ class MinimumTorqueSpline(SegmentCurve):
     constant_rate = "everywhere"
     closable = False
     iterative = True
+    practical_keyframes = 200
     family = ROTATION_VECTOR
     operations = {"exps per sample": 1}
 
@@ -52,7 +53,7 @@ class MinimumTorqueSpline(SegmentCurve):
         *,
         subintervals: Count = 4,
         tolerance: Positive = 1e-6,
-        max_iterations: Count = 500,
+        max_iterations: Count = 200,
         on_failure: OnFailure = "raise",
     ) -> None:
         m, tracks = subintervals, keyframes.tracks

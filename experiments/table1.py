@@ -147,12 +147,7 @@ def _counts(case: PaperCase, count: int, protocol: Protocol, name: str) -> dict[
 
 def _papers(row: Row, name: str) -> dict[str, Any]:
     """The paper's own numbers: its B-spline stands beside both constructions of one."""
-    if name == "quartic":
-        return {"paper_iterations": 0, "paper_seconds": row.quartic_seconds, "paper_ratio": 1.0}
-    if name in SCHEMES:
-        return {
-            "paper_iterations": row.iterations,
-            "paper_seconds": row.seconds,
-            "paper_ratio": row.ratio,
-        }
-    return {"paper_iterations": None, "paper_seconds": None, "paper_ratio": None}
+    spline = (row.iterations, row.seconds, row.ratio)
+    published = {"quartic": (0, row.quartic_seconds, 1.0), "nielson": spline, "kim": spline}
+    names = ("paper_iterations", "paper_seconds", "paper_ratio")
+    return dict(zip(names, published.get(name, (None, None, None)), strict=True))

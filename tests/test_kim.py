@@ -11,6 +11,7 @@ import quatspline as qs
 from quatspline import quaternion
 from quatspline.curve import Curve
 from quatspline.families.block_tridiagonal import solve_block_tridiagonal
+from quatspline.families.cumulative import ANGLES
 from quatspline.quaternion import FloatArray
 from walks import walk
 
@@ -161,7 +162,7 @@ def test_tracks_are_those_of_single_curves() -> None:
 )
 def test_refusals(given: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
-        kim(None, KEYS if not given.get("closed") else KEYS, **given)
+        kim(None, KEYS, **given)
 
 
 # -- convergence --------------------------------------------------------------------------------
@@ -217,18 +218,17 @@ def test_what_is_reported_is_what_evaluation_gives() -> None:
         assert curve.solve_report is not None
         assert curve.solve_report.converged
         assert curve.solve_report.residual <= tolerance
-        assert curve.solve_report.residual == pytest.approx(miss(curve), rel=1e-3, abs=3e-15)
+        assert curve.solve_report.residual == pytest.approx(miss(curve), rel=1e-3, abs=3e-14)
 
 
 def test_increments_may_exceed_half_a_turn() -> None:
-    """Where the logarithms of the controls could not follow, samples between keyframes still do."""
-    times = np.concatenate([[0.0], np.cumsum(np.exp(np.random.default_rng(4).uniform(0, 2.3, 49)))])
-    curve = kim(times, walk(50, 120.0, seed=4), align=False, tolerance=1e-12)
+    """Where the logarithms of the controls could not follow, the curve is as smooth as elsewhere."""
+    curve = kim(None, walk(100, 165.0, seed=4), align=False, tolerance=1e-12)
+    last = curve.segments[0, :, ANGLES + 12 + 3]  # type: ignore[attr-defined]  # |w| u^3 / 6
+    assert 6.0 * last[:-1].max() > np.pi
     assert miss(curve) < 1e-11
     for order in range(3):
-        h = 1e-9
-        scale = np.abs(curve(times, order)).max()
-        assert jumps(curve, order, h) < 1e-5 * scale
+        assert jumps(curve, order, 1e-9) < 1e-6
 
 
 def test_uneven_knots_converge_where_a_solution_is_near() -> None:
@@ -310,5 +310,6 @@ def test_block_tridiagonal(n: int, cyclic: bool) -> None:
 
 
 def test_block_tridiagonal_refuses_a_cycle_of_one() -> None:
+    lower, diagonal, upper = np.ones((3, 1, 3, 3))
     with pytest.raises(ValueError, match="at least 2"):
-        solve_block_tridiagonal(*np.ones((3, 1, 3, 3)), np.ones((1, 3)), cyclic=True)
+        solve_block_tridiagonal(lower, diagonal, upper, np.ones((1, 3)), cyclic=True)

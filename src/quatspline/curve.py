@@ -112,6 +112,8 @@ class Curve(abc.ABC):
     peer: ClassVar[str | None] = None
     """The third-party distribution that it wraps."""
     min_keyframes: ClassVar[int] = 2
+    practical_keyframes: ClassVar[int | None] = None
+    """Keyframes beyond which set-up takes minutes; experiments leave those cells out."""
     orders: tuple[int, ...] = (0, 1, 2)
     """Orders that a call offers; a peer may lack some."""
     operations: dict[str, float] = {}
