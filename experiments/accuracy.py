@@ -1,5 +1,7 @@
 """Accuracy against keyframe spacing on a smooth motion, and the orders that it falls with."""
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
@@ -49,7 +51,7 @@ def _measured(name: str, times: FloatArray, keyframes: FloatArray) -> dict[str, 
     limit = cls.practical_keyframes
     if limit is not None and len(times) > limit:
         return {"failure": f"over budget beyond {limit} keyframes"}
-    options = {"tolerance": 1e-11} if cls.iterative else {}
+    options: dict[str, Any] = {"tolerance": 1e-11} if cls.iterative else {}
     try:
         return dict(errors(cls(times, keyframes, **options)))
     except Exception as error:  # what does not apply or fails is a row with its reason

@@ -15,8 +15,8 @@ TITLE = "Fairness: torque energy over the minimum"
 PAPER = False
 KEYS = ["scheme"]
 NOTE = (
-    "Ratios of the integral of |alpha|^2 to that of min-torque (an upper bound of the true minimum) on committed, seeded "
-    "sets: 4 to 9 keyframes, steps of 20 to 110 degrees, spacings uniform in [0.5, 1.5], open. Where the velocity "
+    "Ratios of the integral of |alpha|^2 to that of min-torque (an upper bound of the true minimum) on committed "
+    "seeded sets: 4 to 9 keyframes, steps of 20 to 110 degrees, spacings uniform in [0.5, 1.5], open. Where the velocity "
     "jumps (C0) the energy is infinite in truth; only its smooth part is given. peak and length are medians of "
     "ratios to min-torque."
 )
@@ -97,6 +97,6 @@ def draw(table: pd.DataFrame) -> Figure:
 
 def caption(table: pd.DataFrame) -> str:
     return (
-        f"Excess of the torque energy over the minimum on {int(table['sets'].max())} keyframe sets: median (marker) and "
+        f"Excess of the torque energy over the minimum on {int(table['sets'].max())} keyframe sets: median (marker), "
         "range (bar); below 1e-6 drawn there. Schemes whose velocity jumps are left out: theirs is infinite."
     )
