@@ -16,7 +16,7 @@ PAPER = False
 KEYS = ["scheme"]
 NOTE = (
     "Ratios of the integral of |alpha|^2 to that of min-torque (an upper bound of the true minimum) on committed "
-    "seeded sets: 4 to 9 keyframes, steps of 20 to 110 degrees, spacings uniform in [0.5, 1.5], open. Where the velocity "
+    "seeded sets: 4 to 9 keyframes, steps of 20 to 110 degrees, spacings uniform in [0.5, 1.5], open. Where velocity "
     "jumps (C0) the energy is infinite in truth; only its smooth part is given. peak and length are medians of "
     "ratios to min-torque."
 )
