@@ -22,6 +22,11 @@ class InterpolatePyLog(InterpolatePyCurve):
     order = 4
     support = None
     constant_rate = "no"
+    departs = {
+        "test_equivariance": "takes logarithms at a fixed reference",
+        "test_keeps_given_signs": "puts neighbours on one hemisphere itself",
+        "test_order": "4 only from several hundred keyframes on; 4.5 at fewer",
+    }
 
     def _fit(self, keyframes: Keyframes) -> None:
         from interpolatepy import LogQuaternionInterpolation

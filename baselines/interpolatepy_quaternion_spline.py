@@ -25,7 +25,14 @@ class InterpolatePyQuaternionSpline(InterpolatePyCurve):
     continuity = 1
     order = 3
     support = 4
-    constant_rate = "everywhere"
+    constant_rate = "no"
+    departs = {
+        "test_continuity_holds": "slerp on the first and the last segment, squad between",
+        "test_keeps_given_signs": "its slerps go the short way",
+        "test_rates_are_the_curves_own": "takes differences over 1e-6, for accelerations twice",
+        "test_time_scale": "takes differences over 1e-6, whatever the unit of time",
+        "test_time_shift": "the second difference over 1e-6 magnifies rounding of the times",
+    }
 
     def _fit(self, keyframes: Keyframes, *, method: Literal["auto", "slerp"] = "auto") -> None:
         from interpolatepy import QuaternionSpline

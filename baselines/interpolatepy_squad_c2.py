@@ -20,6 +20,12 @@ class InterpolatePySquadC2(InterpolatePyCurve):
     order = 1
     support = 4
     constant_rate = "no"
+    departs = {
+        "test_keeps_given_signs": "its slerps go the short way",
+        "test_no_jump_along_a_family_of_keyframes": "its slerps go the short way, between inner quaternions too",
+        "test_rates_are_the_curves_own": "takes differences over 1e-6, for accelerations twice",
+        "test_time_scale": "takes differences over 1e-6, whatever the unit of time",
+    }
 
     def _fit(self, keyframes: Keyframes) -> None:
         from interpolatepy import SquadC2

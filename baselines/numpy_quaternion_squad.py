@@ -29,6 +29,7 @@ class NumpyQuaternionSquad(PeerCurve):
     support = 4
     constant_rate = "everywhere"
     closable = False
+    departs = {"test_keeps_given_signs": "its slerps go the short way"}
 
     def _fit(self, keyframes: Keyframes, *, unflip: bool = False) -> None:
         import quaternion

@@ -24,6 +24,10 @@ class ScipyRotationSpline(PeerCurve):
     constant_rate = "everywhere"
     closable = False
     orders = (0, 1, 2)
+    departs = {
+        "test_keeps_given_signs": "rotations carry no sign",
+        "test_time_scale": "its iteration ends at a change of rates of 1e-9, whatever the unit of time",
+    }
 
     def _fit(self, keyframes: Keyframes) -> None:
         from scipy.spatial.transform import Rotation, RotationSpline

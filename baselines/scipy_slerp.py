@@ -21,6 +21,7 @@ class ScipySlerp(PeerCurve):
     order = 2
     support = 2
     constant_rate = "everywhere"
+    departs = {"test_keeps_given_signs": "rotations carry no sign"}
 
     def _fit(self, keyframes: Keyframes) -> None:
         from scipy.spatial.transform import Rotation, Slerp
