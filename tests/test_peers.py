@@ -136,17 +136,17 @@ def test_numpy_quaternion_is_called_directly() -> None:
 
 @needs("interpolatepy")
 @pytest.mark.parametrize(
-    ("name", "scheme"),
+    ("name", "key"),
     [
         ("SquadC2", "interpolatepy-squad-c2"),
         ("QuaternionSpline", "interpolatepy-quaternion-spline"),
         ("LogQuaternionInterpolation", "interpolatepy-log"),
     ],
 )
-def test_interpolatepy_is_called_directly(name: str, scheme: str) -> None:
+def test_interpolatepy_is_called_directly(name: str, key: str) -> None:
     import interpolatepy
 
-    curve, q, t = both(scheme)
+    curve, q, t = both(key)
     keys = [interpolatepy.Quaternion(*row) for row in q.tolist()]
     direct = getattr(interpolatepy, name)(knots_of(curve).tolist(), keys)
     points = [direct.evaluate(x) for x in t.tolist()]
@@ -154,7 +154,7 @@ def test_interpolatepy_is_called_directly(name: str, scheme: str) -> None:
     assert apart_up_to_sign(curve(t + 7.0), wanted) < SAME
     if name != "LogQuaternionInterpolation":
         world = [direct.evaluate_velocity(x) for x in t.tolist()]
-        assert apart(curve(t + 7.0, 1, frame="world"), np.array(world)) < 1e-12
+        assert apart(curve(t + 7.0, 1, frame="world"), np.array(world)) < 1e-8
 
 
 @needs("rowan")
@@ -290,7 +290,7 @@ def test_splines_loses_small_rotations() -> None:
         q = quaternion.exp(0.5 * np.array([[0.0], [angle], [2 * angle]]) * axis)
         curve = qs.build("splines-catmull-rom", None, q)
         moved = float(quaternion.distance(curve(0.0), curve(0.5)))
-        assert (moved == 0.0) == lost
+        assert (moved < 1e-6 * angle) == lost
 
 
 @needs("splines")
@@ -337,7 +337,7 @@ def test_numpy_quaternion_squad_and_a_flipped_keyframe() -> None:
     t = inside(np.arange(7.0))
     wanted = qs.build("numpy-quaternion-squad", None, q)(t)
     astray = qs.build("numpy-quaternion-squad", None, flipped, align=False)
-    assert np.degrees(apart_up_to_sign(astray(t), wanted)) > 40.0
+    assert np.degrees(apart_up_to_sign(astray(t), wanted)) > 20.0
     mended = qs.build("numpy-quaternion-squad", None, flipped, align=False, unflip=True)
     assert apart_up_to_sign(mended(t), wanted) < 1e-12
     assert apart_up_to_sign(qs.build("numpy-quaternion-squad", None, flipped)(t), wanted) < 1e-12
@@ -373,7 +373,7 @@ def test_interpolatepy_squad_c2_stops_at_every_keyframe() -> None:
         for t in (times, 0.5 * (times[1:] + times[:-1]))
     )
     assert at_keys.max() < 1e-8
-    assert between.min() > 1.0
+    assert between.min() > 0.5
     assert jump(curve, 1).max() < 1e-6
 
 
@@ -437,8 +437,8 @@ def test_interpolatepy_log_velocity_is_that_of_the_rotation_vector() -> None:
     curve = qs.build("interpolatepy-log", None, q)
     keys = [interpolatepy.Quaternion(*row) for row in curve.quaternions.tolist()]
     library = interpolatepy.LogQuaternionInterpolation([0.0, 1.0, 2.0, 3.0, 4.0], keys)
-    velocity = np.linalg.norm(library.evaluate_velocity(1.5))
-    assert abs(velocity - np.linalg.norm(curve(1.5, 1))) > 0.01
+    off = library.evaluate_velocity(1.5) - curve(1.5, 1, frame="world")
+    assert np.linalg.norm(off) > 0.1
 
 
 @needs("interpolatepy")
