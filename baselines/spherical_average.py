@@ -64,6 +64,9 @@ class SphericalAverage(SegmentCurve):
     iterative = True
     family = SPHERICAL_MEAN
     operations = {"logs per sample": 12, "logs per keyframe and iteration": 3}
+    departs = {
+        "test_keeps_given_signs": "controls of so long a step share no half sphere: no solution found"
+    }
 
     def _fit(
         self,

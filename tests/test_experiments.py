@@ -53,12 +53,10 @@ def test_cases_are_round_numbers_of_the_search(case):
     assert np.all(search.steps(case.quaternions[None], case.closed) < 180.0)
 
 
-def test_search_is_seeded_and_finds_candidates():
-    found = [search.calmest(search.key_candidates, 16, False, 1) for _ in range(2)]
-    assert found[0][1] == found[1][1] > 0
-    np.testing.assert_array_equal(found[0][0], found[1][0])
-    curve = scheme("nielson")(None, search.orientations(found[0][0]), **SOLVE)
-    assert curve.solve_report.iterations == 16
+def test_search_finds_the_committed_key():
+    found, hits = search.calmest(search.key_candidates, 16, False, 5)
+    np.testing.assert_array_equal(found, KEY.euler)
+    assert hits > 1000
 
 
 def test_loops_have_equal_steps():

@@ -30,7 +30,7 @@ CSV_FLOAT = "%.12g"
 """Twelve digits: all that a measurement holds, short of the rounding that machines differ in."""
 
 MARKDOWN_FLOAT = ".4g"
-DPI = 150
+DPI = 300
 LIBRARIES = ("numpy", "scipy", "numba", "pandas", "matplotlib")
 
 

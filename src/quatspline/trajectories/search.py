@@ -99,7 +99,7 @@ def calmest(
 if __name__ == "__main__":
     for name, candidates, iterations, closed, batches in (
         ("key", key_candidates, 16, False, 5),
-        ("teapot", teapot_candidates, 40, True, 25),
+        ("teapot", teapot_candidates, 40, True, 6),
     ):
         found, hits = calmest(candidates, iterations, closed, batches)
         turns = steps(orientations(found)[None], closed)[0]
