@@ -137,7 +137,7 @@ def _update(d, i, weights, sign, q, out):
     beta, sb, _ = arc_angle(
         left[0], left[1], left[2], left[3], right[0], right[1], right[2], right[3]
     )
-    lam, mu, delta = weights[i]
+    lam, mu, delta = weights[i, 0], weights[i, 1], weights[i, 2]
     s1, s2 = _ratio(1.0 - delta, beta, sb), _ratio(delta, beta, sb)
     before, after = s1 * _ratio(1.0 - lam, ta, sa), s2 * _ratio(mu, tc, sc)
     own = s1 * _ratio(lam, ta, sa) + s2 * _ratio(1.0 - mu, tc, sc)
@@ -184,7 +184,9 @@ def _iterate(q, weights, closed, sign, parameters, report):
     change = 0.0
     count = 0
     while count < limit and first < last and not (by_residual and residual <= tolerance):
-        old[:] = d
+        for i in range(n):
+            for k in range(4):
+                old[i, k] = d[i, k]
         source = old if jacobi else d
         for i in range(first, last):
             _update(source, i, weights, sign, q, d)

@@ -29,7 +29,7 @@ FORMATS = {
     "slope": ".2f",
     "regression": ".2f",
 }
-QUICK, FULL = (11, 21, 41, 81, 161), (11, 21, 41, 81, 161, 321, 641)
+QUICK, FULL = (11, 21, 41, 81), (11, 21, 41, 81, 161, 321, 641)
 KINDS = ("uniform", "jittered", "log-uniform")
 
 

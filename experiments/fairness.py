@@ -33,7 +33,7 @@ REFERENCE = "min-torque"
 
 
 def measure(run: Run) -> pd.DataFrame:
-    sets = torque_sets(40 if run.quick else COUNT)
+    sets = torque_sets(10 if run.quick else COUNT)
     names = [REFERENCE, *(n for n in (run.schemes or schemes()) if n != REFERENCE)]
     ratios: dict[str, list[dict[str, float]]] = {name: [] for name in names}
     reasons: dict[str, str] = {}

@@ -52,6 +52,13 @@ DAMPING, DAMPED, STUCK = 1e-4, 1e-3, 1e8
 
 
 @compiled
+def _copy(source, target):
+    """Element by element: a slice assignment would compile numpy's broadcasting errors too."""
+    for i in range(source.size):
+        target[i] = source[i]
+
+
+@compiled
 def minimise(nodes, rates, h, m, tolerance, limit, segments, report):
     """Minimise (1) for every track; fills segments and report, returns the energies."""
     energies = np.empty(nodes.shape[0])
@@ -81,9 +88,10 @@ def _minimise(q, x, h, m, tolerance, limit, report):
         _normal_equations(q, x, h, m, matrix, gradient)
         accepted = False
         while not accepted and damping < STUCK:
-            band[:] = matrix
-            band[:, 0] *= 1.0 + damping
-            step[:] = gradient
+            _copy(matrix.ravel(), band.ravel())
+            for i in range(band.shape[0]):
+                band[i, 0] *= 1.0 + damping
+            _copy(gradient, step)
             if _solve_band(band, step):
                 change = _move(q, x, h, step, trial_q, trial_x)
                 trial = _energy(trial_q, trial_x, h)
@@ -148,8 +156,8 @@ def _energy(q, x, h):
 @compiled
 def _normal_equations(q, x, h, m, matrix, gradient):
     """J^T J, row i and column i - d at [i, d], and -J^T r; the turns of keyframes are fixed."""
-    matrix[:] = 0.0
-    gradient[:] = 0.0
+    matrix.fill(0.0)
+    gradient.fill(0.0)
     y, r, scratch = np.empty(15), np.empty(24), np.empty((1, SIZE))
     jacobian = np.empty((BAND, 24))
     for i in range(h.size):

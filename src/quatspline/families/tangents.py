@@ -132,7 +132,7 @@ def chart_velocities(q, h, closed, sign, window, ends):
     v, time, x = np.empty((n, 3)), np.empty(5), np.empty((5, 3))
     for i in range(n):
         if closed or 0 < i < n - 1:
-            v[i] = chart_velocity(q, h, closed, sign, i, window, time, x)
+            v[i, 0], v[i, 1], v[i, 2] = chart_velocity(q, h, closed, sign, i, window, time, x)
         else:
-            v[i] = end_velocity(q, h, i, window, ends, time, x)
+            v[i, 0], v[i, 1], v[i, 2] = end_velocity(q, h, i, window, ends, time, x)
     return v

@@ -7,7 +7,7 @@ import pandas as pd
 
 from quatspline import quaternion
 from quatspline.curve import Curve
-from quatspline.instruments.derivatives import derivative
+from quatspline.instruments.derivatives import rates
 from quatspline.quaternion import FloatArray
 from quatspline.trajectories.smooth import INNER, SPAN, tumble, tumble_rates
 
@@ -37,12 +37,12 @@ def errors(curve: Curve) -> dict[str, float]:
     inner = (t >= INNER[0]) & (t <= INNER[1])
     angle = quaternion.distance(curve(t), tumble(t))
     omega, alpha = tumble_rates(t[inner])
-    rates = [derivative(curve, t[inner], order) for order in (1, 2)]
+    own_omega, own_alpha = rates(curve, t[inner])
     return {
         "inner_angle": float(angle[inner].max()),
         "angle": float(angle.max()),
-        "inner_omega": float(np.linalg.norm(rates[0] - omega, axis=-1).max()),
-        "inner_alpha": float(np.linalg.norm(rates[1] - alpha, axis=-1).max()),
+        "inner_omega": float(np.linalg.norm(own_omega - omega, axis=-1).max()),
+        "inner_alpha": float(np.linalg.norm(own_alpha - alpha, axis=-1).max()),
     }
 
 

@@ -24,7 +24,7 @@ CONTINUOUS = 1e-5
 FALLING = 0.05
 """... and so do those that fall to this share when the step falls to a tenth."""
 
-DENSE = 40
+DENSE = 10
 """Samples a segment for the size of a quantity."""
 
 

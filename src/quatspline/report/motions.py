@@ -25,9 +25,11 @@ LOGARITHM = ["lx", "ly", "lz"]
 
 
 @cache
-def body(case: str) -> Mesh:
-    """The mesh that a case moves."""
-    return key_mesh() if case == "key" else teapot_mesh()
+def body(case: str, *, small: bool = False) -> Mesh:
+    """The mesh that a case moves, coarser for small pictures."""
+    if case == "key":
+        return key_mesh(14 if small else 28)
+    return teapot_mesh(7 if small else 16)
 
 
 VIEWS: dict[str, dict[str, Any]] = {
@@ -44,7 +46,7 @@ def render(case: PaperCase, t: FloatArray, quaternions: FloatArray) -> int:
         fig = Figure(figsize=(3.2, 2.4), dpi=100)
         canvas = FigureCanvasAgg(fig)
         ax: Any = fig.add_axes((0, 0, 1, 1), projection="3d")
-        draw_frames(ax, body(case.name), place[None], q[None], **VIEWS[case.name])
+        draw_frames(ax, body(case.name, small=True), place[None], q[None], **VIEWS[case.name])
         canvas.draw()
         drawn += memoryview(canvas.buffer_rgba()).nbytes
     return drawn
