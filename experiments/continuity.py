@@ -18,7 +18,7 @@ KEYS = ["case", "scheme", "order"]
 NOTE = (
     "Jump: the largest difference of one-sided limits over inner keyframes. An order counts as continuous "
     "when its jump is below 1e-5 of its size or falls with the step; the first that stays is the control. "
-    "Smooth motion is measured for in-house schemes. measured_k is k of C^k (3 means: no jump found up to the third derivative)."
+    "Smooth motion is measured for in-house schemes. measured_k is k of C^k (3: no jump up to the third derivative)."
 )
 FORMATS = {
     "jump": ".2e",
