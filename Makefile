@@ -8,7 +8,7 @@ QUICK ?=
 NAME ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help reproduce benchmark benchmark-speed test lint format new-baseline check-baseline reference lock clean
+.PHONY: help reproduce benchmark test lint format new-baseline check-baseline reference lock clean
 
 help: ## Show the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /|/' | awk -F'|' '{printf "  make %-16s %s\n", $$1, $$2}'
@@ -62,5 +62,5 @@ lock: ## Renew requirements.lock from the newest releases
 
 clean: ## Remove the environment, caches and generated results
 	@rm -rf $(VENV) build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
-	@find results -mindepth 1 -maxdepth 1 ! -name reference ! -name README.md -exec rm -rf {} +
+	@mkdir -p results && find results -mindepth 1 -maxdepth 1 ! -name reference ! -name README.md -exec rm -rf {} +
 	@find . -name __pycache__ -not -path './.git/*' -prune -exec rm -rf {} +

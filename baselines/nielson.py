@@ -63,9 +63,11 @@ class Nielson(SegmentCurve):
         if (nu < 0.0).any():
             i = int(np.argmax(nu < 0.0))
             raise ValueError(f"tension[{i}] = {nu[i]:g}: must not be negative")
+        if ends == "stationary" and keyframes.closed:
+            raise ValueError("ends='stationary': a closed curve has no ends")
         if (nu > 0.0).any():
             self.order = 2
-        if ends == "stationary" and not keyframes.closed:
+        if ends == "stationary" or (nu > 0.0).any():
             self.constant_rate = "no"
         switches = [method == "jacobi", stop == "residual", tolerance, max_iterations]
         parameters = np.array([*switches, ends == "stationary", *nu], dtype=float)

@@ -7,8 +7,9 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from quatspline.instruments.accuracy import errors, knots, with_slopes
+from quatspline.instruments.derivatives import analytic
 from quatspline.quaternion import FloatArray
-from quatspline.registry import scheme, schemes
+from quatspline.registry import found, scheme, version
 from quatspline.report import style
 from quatspline.running import Run
 from quatspline.trajectories.smooth import SPAN, tumble
@@ -40,20 +41,22 @@ def measure(run: Run) -> pd.DataFrame:
     for kind, count in run.progress(cells, label="accuracy"):
         times = knots(run.rng("accuracy", kind, count), kind, count)
         keyframes = tumble(times)
-        for name in run.schemes or schemes():
+        for name in run.schemes or found():
             base = {"knots": kind, "scheme": name, "keyframes": count}
             rows.append(base | {"spacing": SPAN / (count - 1)} | _measured(name, times, keyframes))
     return with_slopes(pd.DataFrame(rows), ["knots", "scheme"])
 
 
 def _measured(name: str, times: FloatArray, keyframes: FloatArray) -> dict[str, object]:
-    cls = scheme(name)
-    limit = cls.practical_keyframes
-    if limit is not None and len(times) > limit:
-        return {"failure": f"over budget beyond {limit} keyframes"}
-    options: dict[str, Any] = {"tolerance": 1e-11} if cls.iterative else {}
     try:
-        return dict(errors(cls(times, keyframes, **options)))
+        cls = scheme(name)
+        limit = cls.practical_keyframes
+        if limit is not None and len(times) > limit:
+            return {"failure": f"over budget beyond {limit} keyframes"}
+        options: dict[str, Any] = {"tolerance": 1e-11} if cls.iterative else {}
+        curve = cls(times, keyframes, **options)
+        rates = "analytic" if analytic(curve) else "numeric"
+        return {**errors(curve), "rates": rates, "version": version(name)}
     except Exception as error:  # what does not apply or fails is a row with its reason
         return {"failure": f"{type(error).__name__}: {error}"}
 

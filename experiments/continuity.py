@@ -1,12 +1,15 @@
 """Measured continuity of every scheme: jumps at keyframes, the control order, the speed there."""
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
 from quatspline.instruments.continuity import jumps, measured_continuity, speeds
+from quatspline.instruments.derivatives import analytic
 from quatspline.quaternion import FloatArray
-from quatspline.registry import scheme, schemes
+from quatspline.registry import found, scheme, version
 from quatspline.report import style
 from quatspline.running import Run
 from quatspline.trajectories.smooth import SPAN, tumble
@@ -18,7 +21,8 @@ KEYS = ["case", "scheme", "order"]
 NOTE = (
     "Jump: the largest difference of one-sided limits over inner keyframes. An order counts as continuous "
     "when its jump is below 1e-5 of its size or falls with the step; the first that stays is the control. "
-    "Smooth motion is measured for in-house schemes. measured_k is k of C^k (3: no jump up to the third derivative)."
+    "Iterative schemes are solved to 1e-11. Smooth motion is for in-house schemes. measured_k is k of C^k "
+    "(3: no jump up to the third derivative)."
 )
 FORMATS = {
     "jump": ".2e",
@@ -29,15 +33,17 @@ FORMATS = {
     "peak_speed": ".2f",
 }
 COUNT = 9
+TOLERANCE = 1e-11
 SMOOTH = (11, 21, 41, 81)
 
 
 def measure(run: Run) -> pd.DataFrame:
     tables = []
-    names = run.schemes or schemes()
+    names = run.schemes or list(found())
     for case, (times, keyframes) in run.progress(_cases(run).items(), label="continuity"):
         for name in names:
-            if not case.startswith("smooth") or scheme(name).peer is None:
+            cls = found()[name].scheme
+            if not case.startswith("smooth") or (cls is not None and cls.peer is None):
                 tables.append(_measured(case, name, times, keyframes))
     return pd.concat(tables, ignore_index=True)
 
@@ -59,11 +65,15 @@ def _cases(run: Run) -> dict[str, tuple[FloatArray, FloatArray]]:
 
 def _measured(case: str, name: str, times: FloatArray, keyframes: FloatArray) -> pd.DataFrame:
     try:
-        curve = scheme(name)(times, keyframes)
+        cls = scheme(name)
+        options: dict[str, Any] = {"tolerance": TOLERANCE} if cls.iterative else {}
+        curve = cls(times, keyframes, **options)
         table = jumps(curve)
         more = {
             "measured_k": measured_continuity(table),
             "claimed_k": curve.continuity,
+            "rates": "analytic" if analytic(curve) else "numeric",
+            "version": version(name),
             **speeds(curve),
         }
     except Exception as error:  # a scheme that does not apply or fails is a row with its reason

@@ -4,9 +4,8 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from quatspline.curve import Curve
 from quatspline.instruments.fairness import fairness
-from quatspline.registry import scheme, schemes
+from quatspline.registry import found, scheme, version
 from quatspline.report import style
 from quatspline.running import Run
 from quatspline.trajectories.sets import COUNT, torque_sets
@@ -34,23 +33,21 @@ REFERENCE = "min-torque"
 
 def measure(run: Run) -> pd.DataFrame:
     sets = torque_sets(10 if run.quick else COUNT)
-    names = [REFERENCE, *(n for n in (run.schemes or schemes()) if n != REFERENCE)]
+    names = [REFERENCE, *(n for n in (run.schemes or found()) if n != REFERENCE)]
     ratios: dict[str, list[dict[str, float]]] = {name: [] for name in names}
     reasons: dict[str, str] = {}
     for times, keyframes, _ in run.progress(sets, label="fairness"):
-        least = fairness(_reference(times, keyframes))
-        for name in names:
+        least: dict[str, float] = {}
+        for name in names:  # the reference comes first
             try:
-                curve = scheme(name)(times, keyframes)
-                own = least if name == REFERENCE else fairness(curve)
+                own = fairness(scheme(name)(times, keyframes))
+                least = least or own
                 ratios[name].append({key: own[key] / least[key] for key in own})
             except Exception as error:  # what does not apply or fails is a row with its reason
-                reasons[name] = f"{type(error).__name__}: {error}"
+                reasons.setdefault(name, f"{type(error).__name__}: {error}")
+                if name == REFERENCE:
+                    break
     return pd.DataFrame([_summary(name, ratios[name], len(sets), reasons) for name in names])
-
-
-def _reference(times: np.ndarray, keyframes: np.ndarray) -> Curve:
-    return scheme(REFERENCE)(times, keyframes)
 
 
 def _summary(
@@ -61,7 +58,8 @@ def _summary(
         "scheme": name,
         "sets": sets,
         "failed": sets - len(table),
-        "velocity_jumps": scheme(name).continuity < 1,
+        "velocity_jumps": (cls := found()[name].scheme) is not None and cls.continuity < 1,
+        "version": version(name),
         "failure": reasons.get(name),
     }
     if len(table):

@@ -10,11 +10,12 @@ from quatspline.trajectories.paper import KEY, RECONSTRUCTED
 TITLE = "Figure 3: the key"
 PAPER = True
 NOTE = RECONSTRUCTED
+SCHEMES = ("quartic", "nielson", "kim")
 KEYS = ["panel", "scheme", "t"]
 
 
 def measure(run: Run) -> pd.DataFrame:
-    return motion_table(KEY, ("quartic", "nielson", "kim"))
+    return motion_table(KEY, tuple(dict.fromkeys([*SCHEMES, *(run.schemes or [])])))
 
 
 def draw(table: pd.DataFrame) -> Figure:
@@ -22,7 +23,7 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def caption(table: pd.DataFrame) -> str:
-    frames = int((table.panel == "frames").sum() / 3)
+    frames = int(((table.panel == "frames") & (table.scheme == "quartic")).sum())
     return (
         f"{KEY.title}. (a) Keyframes; (b) {frames} frames by the quartic; (c) {frames} frames by the "
         "cubic B-spline of Nielson, frames at keyframes in full colour; (d) the log-curves ln q(t) in "

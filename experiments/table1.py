@@ -9,6 +9,7 @@ import pandas as pd
 from quatspline.curve import Curve
 from quatspline.instruments.protocols import PROTOCOLS, Protocol, frames
 from quatspline.instruments.timing import Contender, interleaved
+from quatspline.options import declared
 from quatspline.registry import scheme
 from quatspline.running import Run
 from quatspline.trajectories.paper import CASES, RECONSTRUCTED, SOLVE, PaperCase, Row
@@ -50,7 +51,9 @@ def measure(run: Run) -> pd.DataFrame:
 
 
 def _options(name: str) -> dict[str, Any]:
-    return SOLVE if scheme(name).iterative else {}
+    """The paper's tolerance and stop rule, as far as the scheme has them."""
+    known = declared(scheme(name)._fit)
+    return {option: value for option, value in SOLVE.items() if option in known}
 
 
 def _group(
@@ -58,13 +61,17 @@ def _group(
 ) -> pd.DataFrame:
     """One case and protocol: all schemes timed against one another."""
     t = case.frames(row.frames)
-    generators = {
-        name: frames(scheme(name), case.keyframes(), t, protocol, **_options(name))
-        for name in schemes
-    }
+    generators, failures = {}, []
+    for name in schemes:
+        try:
+            generators[name] = frames(scheme(name), case.keyframes(), t, protocol, **_options(name))
+        except Exception as error:  # what does not apply or fails is a row with its reason
+            base = {"case": case.name, "frames": row.frames, "protocol": protocol, "scheme": name}
+            failures.append(base | {"failure": f"{type(error).__name__}: {error}"})
     if row.rendered:
         generators = {name: _rendering(case, t, g) for name, g in generators.items()}
-    return _timed(run, case.name, case, row, protocol, generators)
+    timed = _timed(run, case.name, case, row, protocol, generators)
+    return pd.concat([timed, pd.DataFrame(failures)]) if failures else timed
 
 
 def _rendering(case: PaperCase, t: Any, generate: Callable[[int], Any]) -> Callable[[int], Any]:
@@ -88,7 +95,11 @@ def _public(run: Run, case: PaperCase, row: Row, schemes: tuple[str, ...]) -> pd
 
         return contender
 
-    contenders = {name: calling(scheme(name), _options(name)) for name in schemes}
+    contenders = {
+        name: calling(scheme(name), _options(name))
+        for name in schemes
+        if scheme(name).closable or not case.closed
+    }
     return _timed(run, f"{case.name}, public call", case, row, "solve-once", contenders)
 
 
@@ -124,8 +135,7 @@ def _timed(
 
 def _counts(case: PaperCase, count: int, protocol: Protocol, name: str) -> dict[str, Any]:
     """Iterations of one solve, and the operations of all frames: no machine changes them."""
-    cls = scheme(name)
-    curve = cls.from_keyframes(case.keyframes(), **_options(name))
+    curve = scheme(name).from_keyframes(case.keyframes(), **_options(name))
     report = curve.solve_report
     iterations = report.iterations if report else 0
     fits = count if protocol == "per-frame" else 1
@@ -135,9 +145,10 @@ def _counts(case: PaperCase, count: int, protocol: Protocol, name: str) -> dict[
         "keyframe and iteration": fits * len(case.euler) * iterations,
     }
     total: dict[str, float] = {"slerps": 0, "exps": 0, "logs": 0}
-    for key, number in cls.operations.items():
+    for key, number in curve.operations.items():
         operation, _, unit = key.partition(" per ")
-        total[operation] += number * scale[unit]
+        if operation in total:
+            total[operation] += number * scale[unit]
     return {
         "iterations": iterations,
         "tolerance": report.tolerance if report else np.nan,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -11,7 +12,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from quatspline import quaternion
+from quatspline import quaternion, running
 from quatspline.instruments.blending import blending
 from quatspline.instruments.protocols import PROTOCOLS, frames
 from quatspline.instruments.timing import interleaved
@@ -201,3 +202,27 @@ def test_findings_name_cells_that_exist():
             for key, value in cell.row.items():
                 rows = rows[rows[key] == value]
             assert rows.iloc[0][cell.column] == cell.value
+
+
+def test_docs_point_to_tables_that_experiments_make():
+    known = set(running.found())
+    for page in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]:
+        named = re.findall(r"results/(\w[\w-]*)\.csv", page.read_text(encoding="utf-8"))
+        assert set(named) <= known, page
+
+
+def test_schemes_that_do_not_apply_are_rows_of_table1(monkeypatch):
+    monkeypatch.setattr(motions, "render", lambda case, t, q: len(t))
+    module = experiment("table1")
+    names = ("quartic", "log-cubic", "nlerp")
+    table = module._group(Run(quick=True), TEAPOT, TEAPOT.rows[1], "solve-once", names)
+    assert set(table["scheme"]) == set(names)
+    row = table[table["scheme"] == "log-cubic"].iloc[0]
+    assert "closed" in row["failure"]
+
+
+def test_tension_gives_up_the_constant_rate():
+    spin = quaternion.exp(np.outer(np.arange(6) * 0.3, [0.0, 0.6, 0.8]))
+    curve = scheme("nielson")(None, spin, tension=5.0)
+    assert curve.constant_rate == "no"
+    assert np.ptp(np.linalg.norm(curve(np.linspace(0.0, 5.0, 101), 1), axis=-1)) > 0.01

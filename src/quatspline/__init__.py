@@ -1,7 +1,7 @@
 """quatspline: which scheme should interpolate my orientations, and what does it cost me?
 
 Keyframes go in, a scheme makes a curve of them, instruments measure the curve, and tables, figures
-and a page show what was measured.  Start with ``quatspline.build`` or ``quatspline.compare``.
+and a page show what was measured.  Start with ``quatspline.build``.
 """
 
 from __future__ import annotations

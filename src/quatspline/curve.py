@@ -307,13 +307,15 @@ class Curve(abc.ABC):
             self._parts: tuple[Curve, ...] = ()
             self._fit(keyframes, **self._options)
         else:
+            known = options.declared(type(self)._fit)
+            excused = {"on_failure": "return"} if "on_failure" in known else {}
             self._parts = tuple(
-                type(self).from_keyframes(keyframes.track(k), **self._options)
+                type(self).from_keyframes(keyframes.track(k), **self._options | excused)
                 for k in range(keyframes.tracks.shape[0])
             )
-            self.solve_report = _joined(
-                [p.solve_report for p in self._parts], keyframes.track_shape
-            )
+            report = _joined([p.solve_report for p in self._parts], keyframes.track_shape)
+            if report is not None:
+                self._conclude(report, self._options.get("on_failure", "raise"))
 
     def _evaluate(self, samples: FloatArray, order: int, out: FloatArray, threads: int) -> None:
         """Fill out (m, K, 4 or 3) at the samples."""

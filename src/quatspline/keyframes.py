@@ -205,9 +205,10 @@ def _refuse_antipodes(keyframes: Keyframes) -> None:
     gaps = np.linalg.norm(q[:, 1:] + q[:, :-1], axis=-1)
     antipodal = np.argwhere(gaps.T < ANTIPODAL)
     if antipodal.size:
-        i = int(antipodal[0][0])
-        n = keyframes.count
+        i, k = (int(index) for index in antipodal[0])
+        track = np.unravel_index(k, keyframes.track_shape) if keyframes.track_shape else ()
+        here, there = (_at("quaternions", [j, *track]) for j in (i, (i + 1) % keyframes.count))
         raise ValueError(
-            f"quaternions[{i}] and quaternions[{(i + 1) % n}] are exact antipodes: "
+            f"{here} = {keyframes.tracks[k, i].tolist()} and {there} are exact antipodes: "
             "with align=False no single arc joins q and -q"
         )

@@ -112,6 +112,14 @@ def scheme(name: str) -> type[Curve]:
     return item.scheme
 
 
+def version(name: str) -> str | None:
+    """The version measured: of the peer that a scheme wraps, otherwise of quatspline."""
+    item = found()[name]
+    if item.scheme is None:
+        return None
+    return importlib.metadata.version(item.scheme.peer or "quatspline")
+
+
 def build(
     name: str,
     times: ArrayLike | None,

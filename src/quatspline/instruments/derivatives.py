@@ -31,6 +31,11 @@ def rates(curve: Curve, t: FloatArray) -> tuple[FloatArray, FloatArray]:
     return numeric.rates(curve._orientation, since, curve.keyframes.knots)
 
 
+def analytic(curve: Curve) -> bool:
+    """Whether both rates are the curve's own, not the numerical fallback's."""
+    return {1, 2} <= set(curve.orders) - set(curve.numeric_orders)
+
+
 def one_sided(curve: Curve, at: FloatArray, step: FloatArray, side: int, order: int) -> FloatArray:
     """Limits (m, width) of a derivative at knots ``at`` (m,), from one side (+1 or -1).
 

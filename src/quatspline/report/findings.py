@@ -65,7 +65,7 @@ def findings(read: Reader) -> list[Finding]:
         ledger = Ledger(read)
         try:
             text = sentence(ledger)
-        except (FileNotFoundError, LookupError):
+        except FileNotFoundError:  # an experiment that was not run
             continue
         found.append(Finding(topic, text, tuple(ledger.used)))
     return found

@@ -10,6 +10,7 @@ import pandas as pd
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from quatspline.options import declared
 from quatspline.quaternion import FloatArray
 from quatspline.registry import scheme
 from quatspline.report import style
@@ -60,7 +61,8 @@ def motion_table(case: PaperCase, schemes: tuple[str, ...]) -> pd.DataFrame:
     """
     rows = []
     for name in schemes:
-        options = SOLVE if scheme(name).iterative else {}
+        known = declared(scheme(name)._fit)
+        options = {option: value for option, value in SOLVE.items() if option in known}
         curve = scheme(name).from_keyframes(case.keyframes(), **options)
         dense = np.linspace(*curve.domain, LOG_SAMPLES)
         grids = {"frames": case.frames(case.rows[0].frames), "log": dense}
@@ -92,6 +94,7 @@ def four_panels(case: PaperCase, table: pd.DataFrame) -> Figure:
     return fig
 
 
+PAPER = ("quartic", "nielson", "kim")
 TITLES = {"quartic": "the quartic", "nielson": "the B-spline (Nielson)"}
 Box = tuple[float, float, float, float]
 
@@ -124,9 +127,12 @@ def _scene(fig: Figure, case: PaperCase, rows: pd.DataFrame, keys: pd.DataFrame,
 def _logs(fig: Figure, table: pd.DataFrame, keys: pd.DataFrame, box: Box) -> None:
     ax: Any = fig.add_axes(box, projection="3d")
     curves = []
-    for name, color in (("nielson", style.BLUE), ("quartic", style.RED)):
-        picked = table[(table.panel == "log") & (table.scheme == name)]
-        curves.append((picked[LOGARITHM].to_numpy(), color, TITLES[name].removeprefix("the ")))
+    logs = table[table.panel == "log"]
+    further = [name for name in logs["scheme"].unique() if name not in PAPER]
+    for name in [*further, "nielson", "quartic"]:
+        picked = logs[logs["scheme"] == name]
+        label = TITLES.get(name, name).removeprefix("the ")
+        curves.append((picked[LOGARITHM].to_numpy(), style.scheme_style(name)["color"], label))
     draw_log_curves(ax, curves, keys[LOGARITHM].to_numpy())
 
 

@@ -17,6 +17,7 @@ from quatspline.report.findings import lines
 
 ROOT = PACKAGE.parents[1]
 REFERENCE = ROOT / "results" / "reference"
+PICTURES = ROOT / "docs" / "images"
 
 
 def findings_block() -> str:
@@ -58,9 +59,11 @@ def renewed(text: str) -> str:
 def adopt(results: Path) -> None:
     """Take the tables of a finished run as the reference that later runs are compared with."""
     REFERENCE.mkdir(parents=True, exist_ok=True)
-    for table in sorted(results.glob("*.csv")):
+    for table in sorted([*results.glob("*.csv"), *results.glob("*.md")]):
         if not re.fullmatch(r"figure\d", table.stem):
             shutil.copyfile(table, REFERENCE / table.name)
+    PICTURES.mkdir(parents=True, exist_ok=True)
+    shutil.copyfile(results / "figure3.png", PICTURES / "figure3.png")
 
 
 def main() -> None:
