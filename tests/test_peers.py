@@ -17,8 +17,9 @@ import pytest
 import quatspline as qs
 from quatspline import numeric, quaternion
 from quatspline.curve import Curve
-from quatspline.families.peers import peer_version, quiet, reflected
+from quatspline.families.peers import quiet, reflected
 from quatspline.quaternion import FloatArray
+from quatspline.registry import version
 from walks import apart, apart_up_to_sign, inside, loop, spin, uneven, walk
 
 pytestmark = pytest.mark.peers
@@ -205,11 +206,11 @@ def peers() -> list[str]:
 @pytest.mark.parametrize("name", peers())
 def test_version_is_known(name: str) -> None:
     scheme = qs.scheme(name)
-    assert peer_version(scheme) == importlib.metadata.version(str(scheme.peer))
+    assert version(scheme.name) == importlib.metadata.version(str(scheme.peer))
 
 
-def test_our_own_have_no_peer_version() -> None:
-    assert peer_version(qs.scheme("slerp")) is None
+def test_our_own_have_our_version() -> None:
+    assert version("slerp") == importlib.metadata.version("quatspline")
 
 
 def test_warnings_stay_inside() -> None:

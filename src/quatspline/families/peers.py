@@ -7,7 +7,6 @@ in the body frame.  Faults stay in: they are measured, by version.
 
 from __future__ import annotations
 
-import importlib.metadata
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -19,11 +18,6 @@ from quatspline import quaternion
 from quatspline.curve import Curve
 from quatspline.keyframes import Keyframes
 from quatspline.quaternion import FloatArray
-
-
-def peer_version(scheme: type[Curve]) -> str | None:
-    """The installed version of the distribution that a scheme wraps; None for our own schemes."""
-    return None if scheme.peer is None else importlib.metadata.version(scheme.peer)
 
 
 @contextmanager
