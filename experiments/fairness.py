@@ -32,7 +32,7 @@ REFERENCE = "min-torque"
 
 
 def measure(run: Run) -> pd.DataFrame:
-    sets = torque_sets(10 if run.quick else COUNT)
+    sets = torque_sets(6 if run.quick else COUNT)
     names = [REFERENCE, *(n for n in (run.schemes or found()) if n != REFERENCE)]
     ratios: dict[str, list[dict[str, float]]] = {name: [] for name in names}
     reasons: dict[str, str] = {}
