@@ -68,7 +68,7 @@ def _summary(
         "failure": reasons.get(name),
     }
     if len(table):
-        torque = table["torque"].where(not row["velocity_jumps"], np.inf)
+        torque = table["torque"] + (np.inf if row["velocity_jumps"] else 0.0)
         row |= {
             "least": torque.min(),
             "median": torque.median(),
