@@ -32,7 +32,7 @@ FORMATS = {
     "least_key_speed": ".3f",
     "peak_speed": ".2f",
 }
-COUNT = 9
+COUNT = 7
 TOLERANCE = 1e-11
 SMOOTH = (11, 21, 41, 81)
 

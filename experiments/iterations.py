@@ -39,7 +39,7 @@ QUANTILES = {
 
 
 def measure(run: Run) -> pd.DataFrame:
-    trials = 200 if run.quick else 2000
+    trials = 200 if run.quick else 1000
     angles = range(10, 171, 20 if run.quick else 10)
     rows = []
     for degrees in run.progress(angles, label="iterations"):

@@ -31,7 +31,7 @@ FORMATS = {
     "paper_seconds": "g",
     "tolerance": "g",
 }
-ROUNDS, RENDERED_ROUNDS = 21, 2
+ROUNDS, RENDERED_ROUNDS = 15, 2
 
 
 def measure(run: Run) -> pd.DataFrame:
