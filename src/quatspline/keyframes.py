@@ -209,6 +209,6 @@ def _refuse_antipodes(keyframes: Keyframes) -> None:
         track = np.unravel_index(k, keyframes.track_shape) if keyframes.track_shape else ()
         here, there = (_at("quaternions", [j, *track]) for j in (i, (i + 1) % keyframes.count))
         raise ValueError(
-            f"{here} = {keyframes.tracks[k, i].tolist()} and {there} are exact antipodes: "
-            "with align=False no single arc joins q and -q"
+            f"{here} and {there} are exact antipodes, {keyframes.tracks[k, i].tolist()} and its "
+            "negative: with align=False no single arc joins q and -q"
         )

@@ -38,11 +38,14 @@ def jumps(curve: Curve) -> pd.DataFrame:
     at, step = _inner_knots(curve)
     dense = _dense(curve)
     rows = []
+    before = 1.0  # the size of the order below, a step of which is a scale where this order is 0
     for order, (quantity, unit) in enumerate(zip(QUANTITIES, UNITS, strict=True)):
         coarse, fine = (_jump(curve, at, share * step, order) for share in STEPS)
         size = _size(curve, dense, order)
         relative = fine / size if size > 0.0 else 0.0
-        smooth = relative <= CONTINUOUS or fine <= FALLING * coarse
+        scale = max(size, before / float(np.diff(curve.times).mean()))
+        smooth = fine <= CONTINUOUS * scale or fine <= FALLING * coarse
+        before = size
         rows.append((order, quantity, unit, fine, coarse, size, relative, smooth))
     names = ["order", "quantity", "unit", "jump", "coarse_jump", "size", "relative", "continuous"]
     return pd.DataFrame(rows, columns=names)
