@@ -19,8 +19,9 @@ UNITS = ("1", "rad/t", "rad/t^2", "rad/t^3")
 STEPS = (1e-2, 1e-3)
 """Steps as shares of the adjoining segment."""
 
-CONTINUOUS = 1e-5
-"""Jumps below this share of the quantity's own size on the curve count as none ..."""
+CONTINUOUS = (1e-5, 1e-5, 1e-5, 1e-3)
+"""Jumps below this share of the size on the curve, an entry an order, count as none (the last order is a
+difference of accelerations, numerical ones too) ..."""
 FALLING = 0.05
 """... and so do those that fall to this share when the step falls to a tenth."""
 
@@ -44,7 +45,7 @@ def jumps(curve: Curve) -> pd.DataFrame:
         size = _size(curve, dense, order)
         relative = fine / size if size > 0.0 else 0.0
         scale = max(size, before / float(np.diff(curve.times).mean()))
-        smooth = fine <= CONTINUOUS * scale or fine <= FALLING * coarse
+        smooth = fine <= CONTINUOUS[order] * scale or fine <= FALLING * coarse
         before = size
         rows.append((order, quantity, unit, fine, coarse, size, relative, smooth))
     names = ["order", "quantity", "unit", "jump", "coarse_jump", "size", "relative", "continuous"]
