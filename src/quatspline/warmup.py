@@ -11,7 +11,7 @@ import numpy as np
 
 from quatspline import quaternion
 from quatspline.families.segments import SegmentCurve
-from quatspline.registry import found, scheme
+from quatspline.registry import found, scheme, schemes
 
 
 def compiled_schemes() -> list[str]:
@@ -42,6 +42,9 @@ def main() -> None:
     names = compiled_schemes()
     warm_up("slerp")  # what all schemes share, before processes part
     quaternion.log(quaternion.mul(_keyframes(), quaternion.conj(_keyframes())))
+    for name in schemes():  # peers with compiled caches of their own fill them in one process
+        if scheme(name).peer is not None:
+            scheme(name)(None, _keyframes())([0.5, 1.5])
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         list(pool.map(warm_up, names))
     print(f"compiled {len(names)} schemes in {time.perf_counter() - start:.0f} s", file=sys.stderr)
