@@ -10,7 +10,7 @@ from quatspline.quaternion import FloatArray
 from quatspline.registry import scheme
 from quatspline.report import style
 from quatspline.running import Run
-from quatspline.trajectories.paper import CASES, RECONSTRUCTED, SOLVE
+from quatspline.trajectories.paper import CASES, RECONSTRUCTED, SOLVE, PaperCase
 from quatspline.trajectories.search import steps
 from quatspline.trajectories.walks import loop, walk
 
@@ -38,21 +38,25 @@ QUANTILES = {
 }
 
 
-def measure(run: Run) -> pd.DataFrame:
-    trials = 200 if run.quick else 1000
+def cells(run: Run) -> list[dict[str, Any]]:
     angles = range(10, 171, 20 if run.quick else 10)
-    rows = []
-    for degrees in run.progress(angles, label="iterations"):
-        rng = run.rng("iterations", degrees)
-        for data, draw, count in (("open, 5 keyframes", walk, 5), ("closed, 6 keyframes", loop, 6)):
-            keyframes = draw(rng, count, float(degrees), trials)
-            rows += _solved(data, keyframes, count == 6, float(degrees))
-    for case in CASES.values():
-        data = f"{case.name} (reconstructed)"
-        q = case.quaternions[:, None]
-        largest = float(steps(case.quaternions[None], case.closed).max())
-        rows += _solved(data, q, case.closed, largest)
-    return pd.DataFrame(rows)
+    random = [{"data": "random", "degrees": degrees} for degrees in angles]
+    return random + [{"data": case} for case in CASES]
+
+
+def measure_cell(run: Run, data: str, degrees: int = 0) -> list[dict[str, object]]:
+    if data in CASES:
+        return _reconstructed(CASES[data])
+    trials, step = 200 if run.quick else 1000, float(degrees)
+    rng = run.rng("iterations", degrees)
+    rows = _solved("open, 5 keyframes", walk(rng, 5, step, trials), False, step)
+    return rows + _solved("closed, 6 keyframes", loop(rng, 6, step, trials), True, step)
+
+
+def _reconstructed(case: PaperCase) -> list[dict[str, object]]:
+    largest = float(steps(case.quaternions[None], case.closed).max())
+    data = f"{case.name} (reconstructed)"
+    return _solved(data, case.quaternions[:, None], case.closed, largest)
 
 
 def _solved(

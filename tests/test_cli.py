@@ -16,7 +16,7 @@ import pandas as pd
 import pytest
 
 import quatspline
-from quatspline import cli, registry, running
+from quatspline import cli, experiment, registry, running
 from quatspline.trajectories import files
 
 Finished = subprocess.CompletedProcess[str]
@@ -446,7 +446,7 @@ def test_two_experiments_of_one_name_are_refused(desk: Desk) -> None:
         ("measure", "ZeroDivisionError: division by zero (bad.py:6)", set()),
         ("load", "ModuleNotFoundError: No module named 'nothing_of_this_name'", set()),
         ("draw", "KeyError: 'y'", {"bad.csv", "bad.md", "bad.caption.txt"}),
-        ("nothing", "TypeError: no function measure(run) in the file", set()),
+        ("nothing", "TypeError: no function measure(run), nor cells(run)", set()),
         ("empty", "TypeError: measure returned an empty table", set()),
     ],
 )
@@ -584,7 +584,7 @@ def test_progress_hands_on_the_items_and_says_nothing_when_quick(
 def test_progress_shows_what_takes_long(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(running, "PATIENCE", 1e-9)
+    monkeypatch.setattr(experiment, "PATIENCE", 1e-9)
     for _ in running.Run(quick=True).progress(range(3), 3, "cases"):
         time.sleep(0.001)
     assert "cases" in capsys.readouterr().err

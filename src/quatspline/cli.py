@@ -124,6 +124,9 @@ def _add_run(commands: Any) -> None:
     size.add_argument("--full", dest="size", action="store_const", const="full")
     run.add_argument("--out", type=Path, default=Path("results"), metavar="DIR", help="%(default)s")
     run.add_argument("--seed", type=_seed, default=0, metavar="N", help="%(default)s")
+    where = run.add_mutually_exclusive_group()
+    where.add_argument("--jobs", type=_count, metavar="N", help="processes; by default one a core")
+    where.add_argument("--dask", metavar="ADDRESS", help="a Dask scheduler that measures instead")
     run.set_defaults(call=_run)
 
 
@@ -238,6 +241,8 @@ def _run(arguments: argparse.Namespace) -> int:
         seed=arguments.seed,
         out=arguments.out,
         command=arguments.command,
+        jobs=arguments.jobs,
+        dask=arguments.dask,
     )
     return FAILED if failed else DONE
 

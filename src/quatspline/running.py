@@ -1,133 +1,25 @@
-"""Finds experiments and runs them: measure, write the table, draw from the table alone.
-
-An experiment is a file in ``experiments`` (beside ``src`` in a checkout, inside the package when
-installed) or in a folder named by ``QUATSPLINE_EXPERIMENTS`` (a path list).  Its name is the file's
-stem with hyphens.  It holds
-
-``TITLE: str``                   what the table is called
-``PAPER: bool``                  whether it is one of the paper's (run in full by default)
-``measure(run) -> DataFrame``    one row a measurement, a failure being a row with its reason
-``draw(table) -> Figure``        optional: the figure, drawn from the table as read from its file
-``caption(table) -> str``        optional: what the figure shows
-``FORMATS: dict[str, str]``      optional: format specifications of columns in the Markdown
-``NOTE: str``                    optional: what a reader of the table must know
-``KEYS: list[str]``              optional: columns that rows are sorted by (see `Results.table`)
-"""
+"""Runs experiments: measure, write the table, draw from the table alone, enter the manifest."""
 
 from __future__ import annotations
 
-import hashlib
-import json
-import os
 import sys
 import time
 import traceback
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, Literal
 
-from quatspline import registry
-from quatspline.options import nearest
-from quatspline.report.results import Journal, Results, cpu_model, now, versions
+from quatspline import registry, sweeps
+from quatspline.experiment import Experiment, Run, experiments, fingerprint, found, reason
+from quatspline.report.results import Journal, Results, now
 
 if TYPE_CHECKING:
-    import numpy as np
     import pandas as pd
 
-FOLDERS = "QUATSPLINE_EXPERIMENTS"
-PATIENCE = 2.0
-"""Seconds before a progress bar shows."""
+__all__ = ["Run", "experiments", "fingerprint", "found", "run"]
 
-T = TypeVar("T")
 Size = Literal["quick", "full"]
-
-
-@dataclass(frozen=True)
-class Run:
-    """What an experiment is asked for.
-
-    Attributes
-    ----------
-    quick : the small size, of seconds rather than minutes
-    schemes : the names asked for, or None for those that the experiment chooses
-    seed : of every random number, through `rng`
-    """
-
-    quick: bool
-    schemes: list[str] | None = None
-    seed: int = 0
-
-    def rng(self, *names: object) -> np.random.Generator:
-        """A generator seeded by the run's seed and by names, whatever else was drawn before."""
-        import numpy as np
-
-        digest = hashlib.sha256("\0".join(map(str, names)).encode()).digest()
-        return np.random.default_rng([self.seed, int.from_bytes(digest[:16], "little")])
-
-    def progress(
-        self, iterable: Iterable[T], total: int | None = None, label: str = ""
-    ) -> Iterator[T]:
-        """The items, with a bar on stderr once they have taken two seconds."""
-        from tqdm import tqdm
-
-        often = 0.2 if sys.stderr.isatty() else PATIENCE  # a log keeps every state of the bar
-        bar = tqdm(
-            iterable, label, total, leave=False, delay=PATIENCE, mininterval=often, file=sys.stderr
-        )
-        return iter(bar)
-
-
-@dataclass(frozen=True)
-class Experiment:
-    """An experiment's file, loaded; or why it could not be."""
-
-    name: str
-    module: ModuleType | None
-    problem: BaseException | None = None
-
-    @property
-    def paper(self) -> bool:
-        """Whether it is one of the paper's."""
-        return bool(getattr(self.module, "PAPER", False))
-
-    @property
-    def title(self) -> str:
-        """What its table is called."""
-        return str(getattr(self.module, "TITLE", self.name))
-
-
-def found() -> dict[str, Path]:
-    """The files of all experiments by name."""
-    extra = [Path(p) for p in os.environ.get(FOLDERS, "").split(os.pathsep) if p]
-    files: dict[str, Path] = {}
-    for folder in (registry.shipped("experiments"), *extra):
-        for path in sorted(folder.glob("[!_]*.py")):
-            name = path.stem.replace("_", "-")
-            if name in files:
-                raise ValueError(f"two experiments are called {name!r}: {files[name]} and {path}")
-            files[name] = path
-    return dict(sorted(files.items()))
-
-
-def experiments(names: Sequence[str] = ()) -> list[Experiment]:
-    """The experiments asked for in that order; by default all, the paper's first.
-
-    Raises
-    ------
-    ValueError
-        An unknown name (with the nearest known one), or none there at all.
-    """
-    files = found()
-    for name in names:
-        if name not in files:
-            raise ValueError(f"unknown experiment {name!r}: {nearest(name, files)}")
-    if not files:
-        raise ValueError(f"no experiments in {registry.shipped('experiments')} or ${FOLDERS}")
-    if names:
-        return [_loaded(name, files[name]) for name in dict.fromkeys(names)]
-    return sorted((_loaded(*item) for item in files.items()), key=lambda e: (not e.paper, e.name))
 
 
 def run(
@@ -138,12 +30,16 @@ def run(
     seed: int = 0,
     out: str | Path = "results",
     command: Sequence[str] = (),
+    jobs: int | None = None,
+    dask: str | None = None,
 ) -> list[str]:
     """Run experiments into a results directory and return the names of those that failed.
 
     One that fails is told on stderr and the rest still run.  What an interrupted run of the same
     options and sources had finished is kept.  ``size`` is by default full for the paper's, quick
-    for the others.  Raises ValueError for unknown or unusable names.
+    for the others.  Cells are measured by ``jobs`` processes, by default one a core, or by the Dask
+    scheduler at an address.  Raises ValueError for unknown or unusable names, and without a
+    scheduler.
     """
     chosen = experiments(names)
     picked = [registry.scheme(name).name for name in schemes] if schemes is not None else None
@@ -151,37 +47,18 @@ def run(
         e.name: Run((size or ("full" if e.paper else "quick")) == "quick", picked, seed)
         for e in chosen
     }
-    results = Results(out)
-    journal = Journal(results, fingerprint(runs))
-    results.begin(command, seed=seed, schemes=picked)
-    for experiment in chosen:
-        _run_or_keep(experiment, runs[experiment.name], results, journal)
+    with sweeps.workers(jobs, dask):
+        results = Results(out)
+        journal = Journal(results, fingerprint(runs))
+        results.begin(command, seed=seed, schemes=picked)
+        for experiment in chosen:
+            _run_or_keep(experiment, runs[experiment.name], results, journal)
     results.finish()
     journal.close()
     return [e.name for e in chosen if results.manifest["experiments"][e.name]["failure"]]
 
 
-def fingerprint(runs: dict[str, Run]) -> str:
-    """A hash of all that decides what a run measures: options, sources, versions, processor."""
-    options = {name: [run.quick, run.schemes, run.seed] for name, run in runs.items()}
-    digest = hashlib.sha256(json.dumps([options, versions(), cpu_model()]).encode())
-    files = {path for path in registry.PACKAGE.rglob("*") if "__pycache__" not in path.parts}
-    files |= {path for folder in registry.folders() for path in folder.glob("*.py")}
-    folders = {path.parent for path in found().values()}  # experiments may share private modules
-    files |= {path for folder in folders for path in folder.glob("*.py")}
-    for path in sorted(path for path in files if path.is_file()):
-        digest.update(path.name.encode() + path.read_bytes())
-    return digest.hexdigest()
-
-
 # -- one experiment -----------------------------------------------------------------------------
-
-
-def _loaded(name: str, path: Path) -> Experiment:
-    try:
-        return Experiment(name, registry.load(path, "experiment"))
-    except Exception as error:  # told when its turn comes, and the others run
-        return Experiment(name, None, error)
 
 
 def _run_or_keep(experiment: Experiment, run: Run, results: Results, journal: Journal) -> None:
@@ -190,6 +67,7 @@ def _run_or_keep(experiment: Experiment, run: Run, results: Results, journal: Jo
     if kept is not None:
         _say(f"{name}: kept as finished by the interrupted run of {journal.content['start']}")
         results.record(name, kept)
+        sweeps.forget(results, name)
         return
     size = "quick" if run.quick else "full"
     entry: dict[str, Any] = {"title": experiment.title, "size": size, "seed": run.seed}
@@ -198,7 +76,7 @@ def _run_or_keep(experiment: Experiment, run: Run, results: Results, journal: Jo
     try:
         _perform(experiment, run, results)
     except Exception as error:
-        entry["failure"] = _reason(error)
+        entry["failure"] = reason(error)
         results.text(f"{name}.error.txt", "".join(traceback.format_exception(error)))
     results.sweep(name)
     entry |= {"end": now(), "seconds": round(time.perf_counter() - began, 3)}
@@ -207,6 +85,7 @@ def _run_or_keep(experiment: Experiment, run: Run, results: Results, journal: Jo
         _say(f"{name}: failed: {entry['failure']}")
     else:
         journal.add(name, results.manifest["experiments"][name])
+        sweeps.forget(results, name)
         _say(f"{name}: done at {size} size in {entry['seconds']:.1f} s")
 
 
@@ -215,14 +94,12 @@ def _perform(experiment: Experiment, run: Run, results: Results) -> None:
     if experiment.problem is not None:
         raise experiment.problem
     name, module = experiment.name, experiment.module
-    if not callable(getattr(module, "measure", None)):
-        raise TypeError("no function measure(run) in the file")
     assert module is not None
     size = f"Size: {'quick' if run.quick else 'full'}; seed {run.seed}."
     note = " ".join([*filter(None, [getattr(module, "NOTE", "")]), size])
     table = results.table(
         name,
-        _checked(module.measure(run)),
+        _checked(_measured(name, module, run, results)),
         title=experiment.title,
         note=note,
         formats=getattr(module, "FORMATS", None),
@@ -232,6 +109,16 @@ def _perform(experiment: Experiment, run: Run, results: Results) -> None:
         results.text(f"{name}.caption.txt", module.caption(table).strip() + "\n")
     if hasattr(module, "draw"):
         _draw(module, table, name, results)
+
+
+def _measured(name: str, module: ModuleType, run: Run, results: Results) -> Any:
+    if callable(getattr(module, "cells", None)):
+        return sweeps.sweep(name, module, run, sweeps.Kept(results, name, fingerprint({name: run})))
+    if callable(getattr(module, "measure", None)):
+        return module.measure(run)
+    raise TypeError(
+        "no function measure(run), nor cells(run) and measure_cell(run, ...), in the file"
+    )
 
 
 def _checked(table: Any) -> pd.DataFrame:
@@ -255,13 +142,6 @@ def _draw(module: ModuleType, table: pd.DataFrame, name: str, results: Results) 
     finally:
         if "matplotlib.pyplot" in sys.modules:
             sys.modules["matplotlib.pyplot"].close("all")
-
-
-def _reason(error: BaseException) -> str:
-    """One line: the kind, the message, and where it was raised."""
-    last = traceback.extract_tb(error.__traceback__)[-1:]
-    where = f" ({Path(last[0].filename).name}:{last[0].lineno})" if last else ""
-    return f"{type(error).__name__}: {' '.join(str(error).split())}{where}"
 
 
 def _say(line: str) -> None:

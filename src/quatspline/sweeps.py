@@ -1,0 +1,236 @@
+"""Sweeps: an experiment's cells measured on all cores or on a Dask cluster, none ever lost.
+
+An experiment that varies something defines, instead of ``measure(run)``,
+
+``cells(run) -> list[dict]``                 what is varied: JSON scalars by name, in order
+``measure_cell(run, **cell) -> dict | list`` the row or rows of a cell; what fails is a row too
+``gather(run, table) -> DataFrame``          optional: columns that need all cells
+``SERIAL: bool``                             optional: its cells time something, so they run one
+                                             after the other in this process
+
+A finished cell is appended to a file at once, and an interrupted run goes on with the others.  Rows
+pass through JSON, which keeps every bit of a float, and stand in the order of the cells: the table
+does not depend on the number of workers or on interruptions.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import os
+import sys
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager, suppress
+from functools import cache
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from quatspline import experiment, registry
+from quatspline.experiment import Run
+from quatspline.report.results import Results
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+FOLDER = ".cells"
+PATIENCE = 10.0
+"""Seconds to wait for a Dask scheduler, and for its first worker."""
+
+Cell = dict[str, Any]
+
+
+class Done(NamedTuple):
+    """A measured cell as it comes from a worker: its rows as JSON, or the trace of what went wrong."""
+
+    place: int
+    rows: str
+    problem: str | None = None
+
+
+class Kept:
+    """The finished cells of one experiment, a line of JSON each, appended as they finish.
+
+    Valid for one fingerprint only.  A line torn by a kill is dropped.
+    """
+
+    def __init__(self, results: Results, name: str, fingerprint: str) -> None:
+        self.path = results.folder / FOLDER / f"{name}.jsonl"
+        self.path.parent.mkdir(exist_ok=True)
+        first = json.dumps({"fingerprint": fingerprint})
+        content = self.path.read_bytes() if self.path.is_file() else b""
+        whole = content[: content.rfind(b"\n") + 1]
+        lines = whole.decode(errors="replace").splitlines()
+        if lines[:1] != [first]:
+            lines, whole = [first], f"{first}\n".encode()
+        self.path.write_bytes(whole)
+        self.rows: dict[str, list[dict[str, Any]]] = {}
+        for line in lines[1:]:
+            with suppress(ValueError, KeyError):
+                entry = json.loads(line)
+                self.rows[key(entry["cell"])] = entry["rows"]
+
+    def add(self, cell: Cell, rows: str) -> None:
+        """Keep a cell's rows: in the file before anything else can go wrong."""
+        with self.path.open("a", encoding="utf-8", newline="\n") as stream:
+            stream.write(f'{{"cell": {key(cell)}, "rows": {rows}}}\n')
+        self.rows[key(cell)] = json.loads(rows)
+
+
+def forget(results: Results, name: str) -> None:
+    """Remove an experiment's cells: its table is written."""
+    (results.folder / FOLDER / f"{name}.jsonl").unlink(missing_ok=True)
+    with suppress(OSError):  # other experiments' cells are in it, or it never was
+        (results.folder / FOLDER).rmdir()
+
+
+def key(cell: Cell) -> str:
+    """What tells a cell from others."""
+    return json.dumps(cell, sort_keys=True)
+
+
+# -- the sweep ----------------------------------------------------------------------------------
+
+
+def sweep(name: str, module: ModuleType, run: Run, kept: Kept) -> pd.DataFrame:
+    """Measure the cells that are not kept and return the rows of all, in the order of the cells.
+
+    Raises RuntimeError naming the first cell that went wrong, once all others are kept.
+    """
+    import pandas as pd
+
+    cells = module.cells(run)
+    keys = [key(cell) for cell in cells]
+    if len(set(keys)) < len(keys):
+        twice = next(k for i, k in enumerate(keys) if k in keys[:i])
+        raise ValueError(f"two cells are {twice}")
+    left = [cell for cell, k in zip(cells, keys, strict=True) if k not in kept.rows]
+    if len(left) < len(cells):
+        message = f"{name}: {len(cells) - len(left)} of {len(cells)} cells kept"
+        print(message, file=sys.stderr, flush=True)
+    measure = _one_by_one if getattr(module, "SERIAL", False) else _side_by_side
+    problems = []
+    for done in run.progress(measure(name, run, left), len(left), name):
+        if done.problem is None:
+            kept.add(left[done.place], done.rows)
+        else:
+            problems.append(done)
+    if problems:
+        first = min(problems)
+        raise RuntimeError(f"cell {key(left[first.place])}: {first.problem}")
+    table = pd.DataFrame([row for k in keys for row in kept.rows[k]])
+    return module.gather(run, table) if hasattr(module, "gather") else table
+
+
+def _one_by_one(name: str, run: Run, cells: Sequence[Cell]) -> Iterator[Done]:
+    for place, cell in enumerate(cells):
+        yield _measured(place, name, run, cell)
+
+
+def _side_by_side(name: str, run: Run, cells: Sequence[Cell]) -> Iterator[Done]:
+    """Cells on the workers, as they finish; after a worker's death those left go to new ones."""
+    from joblib import Parallel, delayed
+    from joblib.externals.loky.process_executor import TerminatedWorkerError
+
+    environment = _environment()
+    shared = (name, run, environment, _sources(*environment.items()))
+    left = dict(enumerate(cells))
+    while left:
+        before = len(left)
+        # A cell a task: a task that dies takes no finished cell with it.
+        parallel = Parallel(return_as="generator_unordered", batch_size=1, max_nbytes=None)
+        try:
+            tasks = [delayed(_measured_elsewhere)(place, *shared, left[place]) for place in left]
+            for done in parallel(tasks):
+                del left[done.place]
+                yield done
+        except TerminatedWorkerError as error:
+            if len(left) == before:  # nothing else finishes: a cell kills its worker
+                cell = key(next(iter(left.values())))
+                raise RuntimeError(f"a worker died, at cell {cell} or beside it: {error}") from None
+
+
+@contextmanager
+def workers(jobs: int | None = None, dask: str | None = None) -> Iterator[None]:
+    """Within it, cells go to processes of this machine (None: one a core) or to a Dask scheduler.
+
+    Raises
+    ------
+    ValueError
+        Without the extra "dask", a scheduler at the address, or a worker of it.
+    """
+    from joblib import parallel_config
+
+    if dask is None:
+        # One thread a process: the cores are shared out already, and sums do not regroup.
+        with parallel_config("loky", n_jobs=jobs or -1, inner_max_num_threads=1):
+            yield
+        return
+    with _client(dask) as client, parallel_config("dask", client=client):
+        yield
+
+
+def _client(address: str) -> AbstractContextManager[Any]:
+    if importlib.util.find_spec("distributed") is None:
+        raise ValueError("--dask needs the extra: pip install 'quatspline[dask]'")
+    import distributed
+
+    try:
+        client = distributed.Client(address, timeout=PATIENCE, set_as_default=False)
+    except (OSError, ValueError) as error:
+        reason = " ".join(str(error).split())
+        raise ValueError(f"--dask {address}: no Dask scheduler answers: {reason}") from None
+    try:
+        client.wait_for_workers(1, timeout=PATIENCE)
+    except TimeoutError:
+        client.close()
+        raise ValueError(f"--dask {address}: the scheduler has no workers") from None
+    return client
+
+
+# -- in a worker --------------------------------------------------------------------------------
+
+_loading = threading.Lock()
+
+
+def _measured_elsewhere(
+    place: int, name: str, run: Run, environment: dict[str, str], sources: str, cell: Cell
+) -> Done:
+    """A cell in another process, which finds the same files as the one that asks."""
+    with _loading:  # a Dask worker may have several threads
+        os.environ.update(environment)
+        if _sources(*environment.items()) != sources:
+            raise RuntimeError("a worker has other sources of quatspline than this process")
+    return _measured(place, name, run, cell)
+
+
+def _measured(place: int, name: str, run: Run, cell: Cell) -> Done:
+    """Measure a cell of an experiment that is found by its name (modules do not travel)."""
+    try:
+        with _loading:
+            module = registry.load(experiment.found()[name], "experiment")
+        rows = module.measure_cell(run, **cell)
+        listed = [rows] if isinstance(rows, dict) else list(rows)
+        return Done(place, json.dumps(listed, default=_plain))
+    except Exception as error:  # told once the other cells are kept
+        return Done(place, "", experiment.reason(error))
+
+
+def _plain(value: Any) -> Any:
+    """A numpy scalar as Python's own."""
+    if hasattr(value, "item"):
+        return value.item()
+    raise TypeError(f"{value!r} in a row: a plain scalar is expected")
+
+
+@cache
+def _sources(*environment: tuple[str, str]) -> str:
+    """A hash of what this process measures with, as it was when first asked for."""
+    return experiment.sources()
+
+
+def _environment() -> dict[str, str]:
+    """The folders of schemes and experiments, for a process that started elsewhere."""
+    names = (registry.FOLDERS, experiment.FOLDERS)
+    folders = {name: os.environ.get(name, "").split(os.pathsep) for name in names}
+    return {k: os.pathsep.join(os.path.abspath(p) for p in v if p) for k, v in folders.items()}

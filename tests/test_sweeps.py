@@ -1,0 +1,280 @@
+"""Sweeps: the same rows whoever measures them, and no finished cell lost or measured twice."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from quatspline import experiment, registry, running, sweeps
+from quatspline.report.results import Results
+from quatspline.running import Run
+from quatspline.sweeps import Kept
+
+COUNT = 8
+SWEEP = """
+import os, pathlib, signal, time
+TITLE = "A sweep"
+HERE = pathlib.Path(__file__).parent
+
+
+def cells(run):
+    return [{{"x": x, "name": f"n{{x}}"}} for x in reversed(range({count}))]
+
+
+def measure_cell(run, x, name):
+    with open(HERE / "measured", "a") as log:
+        log.write(f"{{x}} {{os.getpid()}}\\n")
+    {note}
+    values = run.rng(name).normal(size=2)
+    return [{{"x": x, "k": k, "value": v}} for k, v in enumerate([*values, float("nan"), float("-inf")])]
+
+
+def gather(run, table):
+    return table.assign(total=table["x"].sum())
+"""
+
+
+class Bench:
+    """A folder with one experiment, run in this process or as a command."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder, self.out = folder, folder / "results"
+
+    def experiment(self, note: str = "pass", serial: bool = False, count: int = COUNT) -> None:
+        text = SWEEP.format(note=note, count=count) + f"\nSERIAL = {serial}\n"
+        (self.folder / "swept.py").write_text(text, encoding="utf-8")
+
+    def run(self, **options) -> list[str]:
+        return running.run(["swept"], out=self.out, **options)
+
+    def popen(self, *arguments: str) -> subprocess.Popen:
+        command = [sys.executable, "-m", "quatspline", "run", "swept", *arguments]
+        return subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE, text=True)
+
+    def table(self) -> bytes:
+        return (self.out / "swept.csv").read_bytes()
+
+    def measured(self) -> Counter[int]:
+        """How often each cell was begun."""
+        return Counter(int(line.split()[0]) for line in self.log())
+
+    def workers(self) -> set[int]:
+        return {int(line.split()[1]) for line in self.log()}
+
+    def log(self) -> list[str]:
+        path = self.folder / "measured"
+        return path.read_text().splitlines() if path.exists() else []
+
+    def kept(self) -> int:
+        path = self.out / ".cells" / "swept.jsonl"
+        return path.read_bytes().count(b"\n") - 1 if path.exists() else 0
+
+
+@pytest.fixture
+def bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Bench:
+    monkeypatch.setenv(experiment.FOLDERS, str(tmp_path))
+    return Bench(tmp_path)
+
+
+def wait_until(condition: Callable[[], bool]) -> None:
+    end = time.monotonic() + 60.0
+    while not condition():
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.01)
+
+
+# -- the same rows ------------------------------------------------------------------------------
+
+
+def test_rows_do_not_depend_on_the_number_of_workers(bench: Bench) -> None:
+    tables = []
+    for jobs in (1, 2):
+        bench.experiment("time.sleep(0.02 * (x % 3))")
+        assert bench.run(jobs=jobs) == []
+        tables.append(bench.table())
+    assert tables[0] == tables[1]
+    assert bench.measured() == dict.fromkeys(range(COUNT), 2)
+    assert len(bench.workers()) == 3  # this process alone, then two others
+    table = pd.read_csv(bench.out / "swept.csv")
+    assert len(table) == 4 * COUNT
+    assert (table["total"] == 4 * sum(range(COUNT))).all()
+    assert not (bench.out / ".cells").exists()
+
+
+def test_rows_keep_every_bit_and_the_order_of_the_cells(bench: Bench) -> None:
+    bench.experiment()
+    results, run = Results(bench.out), Run(quick=True, seed=3)
+    module = registry.load(bench.folder / "swept.py", "experiment")
+    with sweeps.workers(2):
+        table = sweeps.sweep("swept", module, run, Kept(results, "swept", "print"))
+    again = sweeps.sweep("swept", module, run, Kept(results, "swept", "print"))
+    rows = [row for cell in module.cells(run) for row in module.measure_cell(run, **cell)]
+    expected = module.gather(run, pd.DataFrame(rows))
+    pd.testing.assert_frame_equal(table, expected, check_exact=True)
+    pd.testing.assert_frame_equal(again, expected, check_exact=True)
+
+
+def test_workers_find_folders_named_after_they_started(
+    bench: Bench, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bench.experiment()
+    assert bench.run(jobs=2) == []
+    later = tmp_path / "later"
+    later.mkdir()
+    monkeypatch.setenv(registry.FOLDERS, os.path.relpath(later))
+    monkeypatch.setenv(experiment.FOLDERS, str(later))
+    (later / "broken_scheme.py").write_text("raise RuntimeError('found')\n")
+    text = "def cells(run): return [{'x': 1}, {'x': 2}]\ndef measure_cell(run, x):\n"
+    text += "    from quatspline.registry import found\n"
+    text += "    return {'x': x, 'problem': found()['broken-scheme'].problem}\n"
+    (later / "seen.py").write_text(text)
+    assert running.run(["seen"], out=bench.out, jobs=2) == []
+    problems = pd.read_csv(bench.out / "seen.csv")["problem"]
+    assert problems.tolist() == ["RuntimeError: found"] * 2
+
+
+# -- nothing lost -------------------------------------------------------------------------------
+
+STOP = "if x == 3 and not (HERE / 'on').exists(): (HERE / 'on').touch(); {how}"
+"""The cell that stops a run, the first time it is measured."""
+
+
+@pytest.mark.parametrize("serial", [True, False])
+def test_an_interrupted_sweep_goes_on_at_the_cell(bench: Bench, serial: bool) -> None:
+    bench.experiment(STOP.format(how="raise KeyboardInterrupt"), serial)
+    with pytest.raises(KeyboardInterrupt):
+        bench.run(jobs=2)
+    kept = bench.kept()
+    assert (kept == 4) if serial else (1 <= kept < COUNT)
+    before = bench.measured()
+    assert bench.run(jobs=2) == []
+    again = bench.measured() - before
+    assert sum(again.values()) == COUNT - kept  # what was kept is not measured again
+    assert len(pd.read_csv(bench.out / "swept.csv")) == 4 * COUNT
+    if serial:
+        assert bench.workers() == {os.getpid()}
+        assert bench.measured() == {**dict.fromkeys(range(COUNT), 1), 3: 2}
+
+
+def test_a_killed_run_goes_on_at_the_cell(bench: Bench) -> None:
+    bench.experiment("while x == 3 and not (HERE / 'on').exists(): time.sleep(0.01)")
+    with bench.popen("--jobs", "2") as process:
+        wait_until(lambda: bench.kept() == COUNT - 1)
+        process.kill()
+    (bench.folder / "on").touch()
+    with bench.popen("--jobs", "2") as process:
+        said = process.communicate()[1]
+    assert process.returncode == 0, said
+    assert f"swept: {COUNT - 1} of {COUNT} cells kept" in said
+    assert bench.measured() == {**dict.fromkeys(range(COUNT), 1), 3: 2}
+    assert not (bench.out / ".cells").exists()
+
+
+def test_a_worker_that_dies_once_costs_its_cell_alone(bench: Bench) -> None:
+    bench.experiment(STOP.format(how="os.kill(os.getpid(), signal.SIGKILL)"))
+    assert bench.run(jobs=2) == []
+    assert len(pd.read_csv(bench.out / "swept.csv")) == 4 * COUNT
+    assert max(bench.measured().values()) == 2
+
+
+def test_a_cell_that_kills_its_worker_is_told_and_the_others_are_kept(bench: Bench) -> None:
+    bench.experiment("if x == 3: os.kill(os.getpid(), signal.SIGKILL)")
+    assert bench.run(jobs=2) == ["swept"]
+    failure = json.loads((bench.out / "manifest.json").read_text())["experiments"]["swept"]
+    assert "a worker died" in failure["failure"]
+    assert '"x": 3' in failure["failure"]
+    assert bench.kept() == COUNT - 1
+
+
+def test_a_cell_that_goes_wrong_is_told_and_the_others_are_kept(bench: Bench) -> None:
+    bench.experiment("assert x not in (2, 5) or (HERE / 'on').exists(), f'{x} is off'")
+    for _ in range(2):
+        assert bench.run(jobs=2) == ["swept"]
+        text = (bench.out / "manifest.json").read_text()
+        reason = json.loads(text)["experiments"]["swept"]["failure"]
+        assert 'cell {"name": "n5", "x": 5}: AssertionError: 5 is off (swept.py:' in reason
+        assert bench.kept() == COUNT - 2
+    (bench.folder / "on").touch()
+    assert bench.run(jobs=2) == []
+    assert bench.measured() == {**dict.fromkeys(range(COUNT), 1), 2: 3, 5: 3}
+
+
+def test_a_torn_line_is_dropped_and_the_next_stands_alone(tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    kept = Kept(results, "swept", "print")
+    kept.add({"x": 1}, '[{"v": 0.1}]')
+    kept.add({"x": 2}, '[{"v": NaN}]')
+    with kept.path.open("rb+") as stream:
+        stream.truncate(kept.path.stat().st_size - 5)
+    again = Kept(results, "swept", "print")
+    assert again.rows == {'{"x": 1}': [{"v": 0.1}]}
+    again.add({"x": 3}, "[]")
+    assert set(Kept(results, "swept", "print").rows) == {'{"x": 1}', '{"x": 3}'}
+
+
+def test_cells_of_other_sources_or_options_do_not_count(tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    Kept(results, "swept", "print").add({"x": 1}, "[]")
+    assert Kept(results, "swept", "other").rows == {}
+    assert Kept(results, "swept", "print").rows == {}
+
+
+def test_cells_that_cannot_be_told_apart_are_refused(bench: Bench) -> None:
+    text = (
+        "def cells(run): return [{'x': 1}, {'x': 1}]\ndef measure_cell(run, x): return {'x': x}\n"
+    )
+    (bench.folder / "swept.py").write_text(text)
+    assert bench.run(jobs=1) == ["swept"]
+    assert 'two cells are {"x": 1}' in (bench.out / "swept.error.txt").read_text()
+
+
+# -- Dask ---------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def cluster() -> Iterator:
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(2, threads_per_worker=1, dashboard_address=None) as local:
+        yield local
+
+
+def test_a_dask_cluster_gives_the_same_bytes(bench: Bench, cluster) -> None:
+    bench.experiment()
+    assert bench.run(jobs=2) == []
+    table = bench.table()
+    (bench.folder / "measured").unlink()
+    assert bench.run(dask=cluster.scheduler_address) == []
+    assert bench.table() == table
+    assert bench.measured() == dict.fromkeys(range(COUNT), 1)
+    own = {worker.pid for worker in cluster.workers.values()}
+    assert bench.workers() <= own
+
+
+def test_a_killed_dask_worker_loses_nothing(bench: Bench, cluster) -> None:
+    bench.experiment(STOP.format(how="os.kill(os.getpid(), signal.SIGKILL)"))
+    assert bench.run(dask=cluster.scheduler_address) == []
+    assert len(pd.read_csv(bench.out / "swept.csv")) == 4 * COUNT
+    assert bench.measured()[3] == 2
+
+
+def test_without_a_scheduler_or_the_extra_nothing_starts(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bench.experiment()
+    monkeypatch.setattr(sweeps, "PATIENCE", 0.2)
+    with pytest.raises(ValueError, match=r"--dask tcp://127.0.0.1:9: no Dask scheduler answers"):
+        bench.run(dask="tcp://127.0.0.1:9")
+    monkeypatch.setattr(sweeps.importlib.util, "find_spec", lambda name: None)
+    with pytest.raises(ValueError, match=r"pip install 'quatspline\[dask\]'"):
+        bench.run(dask="tcp://127.0.0.1:9")
+    assert not bench.out.exists()
+    assert not bench.log()
