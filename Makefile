@@ -6,9 +6,10 @@ RUN := $(BIN)/python -m quatspline
 PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check install --constraint requirements.lock
 QUICK ?=
 NAME ?=
+TASK ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help reproduce benchmark test lint format new-baseline check-baseline reference lock clean
+.PHONY: help reproduce benchmark benchmark-speed test lint format new-baseline check-baseline reference lock clean
 
 help: ## Show the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /|/' | awk -F'|' '{printf "  make %-16s %s\n", $$1, $$2}'
@@ -32,6 +33,12 @@ reproduce: $(VENV)/run ## The paper in full and every other experiment at quick 
 
 benchmark: $(VENV)/run ## Every experiment at full size (QUICK=1: all at quick size)
 	@$(RUN) run $(if $(QUICK),--quick,--full)
+
+benchmark-speed: $(VENV)/test ## The speed suite (pytest-benchmark), compared with its last run: TASK=evaluate
+	@$(BIN)/python -m pytest benchmarks -q --benchmark-only --benchmark-autosave --benchmark-compare \
+	  --benchmark-storage=file://results/benchmarks --benchmark-columns=median,iqr,rounds \
+	  --benchmark-max-time=0.3 --benchmark-min-rounds=3 \
+	  -W ignore::pytest_benchmark.logger.PytestBenchmarkWarning $(if $(TASK),-k '$(TASK)')
 
 test: $(VENV)/test lint ## Lint, types and all tests
 	@$(BIN)/python -m pytest -n 2 --dist worksteal -q

@@ -44,5 +44,4 @@ class CatmullRom(SegmentCurve):
     operations = {"slerps per sample": 6, "logs per keyframe": 5, "exps per keyframe": 2}
 
     def _fit(self, keyframes: Keyframes, *, ends: Literal["chart", "secant"] = "chart") -> None:
-        plain = np.zeros(3 * keyframes.count)
-        self._solve(FIT, np.array([SECANT if ends == "secant" else CHART, *plain]))
+        self._solve(FIT, np.array([SECANT if ends == "secant" else CHART]))

@@ -8,7 +8,8 @@ import numpy as np
 
 from quatspline._jit import fit_kernel, inlined
 from quatspline.families.arcs import ARC, SIZE, set_arc
-from quatspline.families.segments import REACH, SegmentCurve, fit_tracks
+from quatspline.families.driver import fit_tracks
+from quatspline.families.segments import REACH, SegmentCurve
 from quatspline.families.tangents import keyframe
 from quatspline.keyframes import Keyframes
 from quatspline.options import Count

@@ -69,7 +69,10 @@ class KochanekBartels(SegmentCurve):
         )
         self._claim(tcb if keyframes.closed else tcb[:, 1:-1], keyframes.uniform)
         switch = SECANT if ends == "secant" else CHART
-        self._solve(FIT, np.array([switch, *tcb.reshape(-1)]))
+        if tcb.any():
+            self._solve(FIT, np.concatenate([[switch], tcb.reshape(-1)]), whole=True)
+        else:
+            self._solve(FIT, np.array([switch]))
 
     def _claim(self, tcb: FloatArray, uniform: bool) -> None:
         """On uniform knots the weights add up to (1 - T)(1 + C B) and (1 - T)(1 - C B)."""

@@ -156,6 +156,30 @@ def fit_kernel(function: Callable[..., Any]) -> Kernel:
     return Kernel(function, FIT_SIGNATURE)
 
 
+@intrinsic(prefer_literal=True)
+def on_stack(typing: Any, count: Any) -> Any:
+    """Room for a constant count of float64 on the stack, aligned to a cache line: no allocation."""
+
+    def generate(context: Any, builder: Any, typed: Any, values: Any) -> Any:
+        room = ir.ArrayType(ir.DoubleType(), count.literal_value)
+        with builder.goto_entry_block():
+            space = builder.alloca(room)
+        space.align = 64
+        return builder.bitcast(space, context.get_value_type(_sheet))
+
+    return _sheet(count), generate
+
+
+@intrinsic
+def at_address(typing: Any, address: Any) -> Any:
+    """A pointer to the float64 at an address."""
+
+    def generate(context: Any, builder: Any, typed: Any, values: Any) -> Any:
+        return builder.inttoptr(values[0], context.get_value_type(_sheet))
+
+    return _sheet(types.intp), generate
+
+
 @intrinsic
 def call_sample(typing: Any, address: Any, sheet: Any, count: Any) -> Any:
     """Call a sample kernel by its address from compiled code."""

@@ -246,15 +246,16 @@ class Curve(abc.ABC):
             raise ValueError(f"frame={frame!r}: expected 'body' or 'world'")
         if threads != 1:
             threads = _checked_threads(threads)
-        tracks = self._keyframes.track_shape
-        shape = (*samples.shape, *tracks, 3 if order else 4)
-        result = np.empty(shape) if out is None else _checked_out(out, shape)
-        flat = result if result.flags.c_contiguous else np.empty(shape)
-        if samples.size:
-            block = flat.reshape(samples.size, self._keyframes.tracks.shape[0], shape[-1])
-            self._evaluate(samples, order, block, threads)
-        if flat is not result:
-            result[...] = flat
+        shape = samples.shape + self._widths[order]
+        if out is None:
+            result = np.empty(shape)
+            self._evaluate(samples, order, result.ravel(), threads)
+        elif _checked_out(out, shape).flags.c_contiguous:
+            result = out
+            self._evaluate(samples, order, result.ravel(), threads)
+        else:
+            result = out
+            result[...] = self(samples, order, threads=threads)
         if order and frame == "world":
             result[...] = quaternion.rotate(self(t, threads=threads), result)
         return result
@@ -302,6 +303,7 @@ class Curve(abc.ABC):
             )
         self._options = options.checked(self.name, type(self)._fit, given)
         self._keyframes = keyframes
+        self._widths = tuple((*keyframes.track_shape, width) for width in (4, 3, 3))
         if self.batched or keyframes.tracks.shape[0] == 1:
             # No part is the curve itself: a cycle would keep its memory until garbage collection.
             self._parts: tuple[Curve, ...] = ()
@@ -318,8 +320,9 @@ class Curve(abc.ABC):
                 self._conclude(report, self._options.get("on_failure", "raise"))
 
     def _evaluate(self, samples: FloatArray, order: int, out: FloatArray, threads: int) -> None:
-        """Fill out (m, K, 4 or 3) at the samples."""
+        """Fill out (m * K * (4 or 3),), sample by sample, at the samples S of size m."""
         t, flips = self._wrapped(samples)
+        out = out.reshape(t.size, self._keyframes.tracks.shape[0], 3 if order else 4)
         for k, part in enumerate(self._parts or (self,)):
             evaluate = (part._orientation, part._velocity, part._acceleration)[order]
             out[:, k] = evaluate(t)
@@ -392,6 +395,7 @@ def _rebuild(name: str, keyframes: kf.Keyframes, given: dict[str, Any]) -> Curve
 
 
 def _samples(t: ArrayLike) -> FloatArray:
+    """The times as a C-contiguous, writeable float64 array of any shape."""
     if type(t) is float:
         return np.array(t)
     try:
@@ -400,7 +404,8 @@ def _samples(t: ArrayLike) -> FloatArray:
         raise ValueError("t: rows of unequal length, or not numbers") from None
     if samples.dtype.kind not in "iuf":
         raise ValueError(f"t: expected real numbers, got dtype {samples.dtype}")
-    return samples.astype(float, copy=False)
+    samples = samples.astype(float, copy=False)
+    return samples if samples.flags.carray else samples.copy()
 
 
 def _checked_out(out: Any, shape: tuple[int, ...]) -> FloatArray:

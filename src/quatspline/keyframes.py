@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -9,8 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from quatspline._jit import compiled
 from quatspline.quaternion import ANTIPODAL, FloatArray
-from quatspline.quaternion import align as one_hemisphere
 
 NORM_TOLERANCE = 1e-3
 """Quaternions off the unit sphere by more than this are refused; within it they are normalised."""
@@ -122,13 +123,14 @@ def prepare(
         raise ValueError(
             f"closing_sign={closing_sign!r}: give 1 or -1, and only with closed=True, align=False"
         )
-    if align:
-        q = one_hemisphere(q)
     track_shape = q.shape[1:-1]
-    tracks = np.ascontiguousarray(np.moveaxis(q.reshape(n, -1, 4), 1, 0))
-    signs = np.full(tracks.shape[0], float(closing_sign or 1))
-    if align and closed:
-        signs = np.where(np.einsum("ki,ki->k", tracks[:, -1], tracks[:, 0]) < 0.0, -1.0, 1.0)
+    rows = q.reshape(n, -1, 4)
+    tracks, signs = (
+        np.empty((rows.shape[1], n, 4)),
+        np.full(rows.shape[1], float(closing_sign or 1)),
+    )
+    if not _take(rows, align, bool(closed and align), tracks, signs):
+        _explain(q)
     keyframes = Keyframes(t, tracks, track_shape, bool(closed), signs)
     if not align:
         _refuse_antipodes(keyframes)
@@ -137,8 +139,8 @@ def prepare(
     return keyframes
 
 
-def _numbers(name: str, given: Any) -> FloatArray:
-    """A float64 copy of real numbers, or a sentence that says why not."""
+def _array(name: str, given: Any) -> FloatArray:
+    """A float64 array of real numbers, or a sentence that says why not."""
     try:
         array = np.asarray(given)
     except ValueError:
@@ -146,11 +148,13 @@ def _numbers(name: str, given: Any) -> FloatArray:
     if array.dtype.kind not in "iuf":
         kind = "complex" if array.dtype.kind == "c" else "not real numbers"
         raise ValueError(f"{name}: {kind} (dtype {array.dtype})")
-    array = np.array(array, dtype=float)
+    return np.asarray(array, dtype=float, order="C")
+
+
+def _refuse_infinite(name: str, array: FloatArray) -> None:
     if not np.isfinite(array).all():
         first = np.argwhere(~np.isfinite(array))[0]
         raise ValueError(f"{_at(name, first)} = {array[tuple(first)]}: not a finite number")
-    return array
 
 
 def _at(name: str, index: Any) -> str:
@@ -160,42 +164,85 @@ def _at(name: str, index: Any) -> str:
 def _quaternions(given: Any, least: int) -> FloatArray:
     if hasattr(given, "as_quat"):
         given = given.as_quat(scalar_first=True)
-    q = _numbers("quaternions", given)
+    q = _array("quaternions", given)
     if q.ndim < 2 or q.shape[-1] != 4:
+        _refuse_infinite("quaternions", q)
         raise ValueError(f"quaternions has shape {q.shape}: expected (n, 4) or (n, ..., 4)")
     if q.shape[0] < least:
         raise ValueError(f"quaternions has {q.shape[0]} keyframes: at least {least} are needed")
     if q.size == 0:
         raise ValueError(f"quaternions has shape {q.shape}: no track in it")
+    return q
+
+
+@compiled
+def _take(q, align, closed, tracks, signs):
+    """Normalise (n, K, 4) into tracks (K, n, 4), aligned, and close them; False if one is no unit."""
+    for k in range(tracks.shape[0]):
+        sign = 1.0
+        for i in range(tracks.shape[1]):
+            w, x, y, z = q[i, k, 0], q[i, k, 1], q[i, k, 2], q[i, k, 3]
+            norm = math.sqrt(w * w + x * x + y * y + z * z)
+            if not abs(norm - 1.0) <= NORM_TOLERANCE:  # NaN is off too
+                return False
+            if align and i > 0:
+                dot = (
+                    w * q[i - 1, k, 0]
+                    + x * q[i - 1, k, 1]
+                    + y * q[i - 1, k, 2]
+                    + z * q[i - 1, k, 3]
+                )
+                sign = -sign if dot < 0.0 else sign
+            norm *= sign
+            tracks[k, i, 0] = w / norm
+            tracks[k, i, 1] = x / norm
+            tracks[k, i, 2] = y / norm
+            tracks[k, i, 3] = z / norm
+        if closed:
+            a, b = tracks[k, 0], tracks[k, tracks.shape[1] - 1]
+            dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
+            signs[k] = -1.0 if dot < 0.0 else 1.0
+    return True
+
+
+def _explain(q: FloatArray) -> None:
+    """Refuse quaternions of which one is not finite or not of unit length."""
+    _refuse_infinite("quaternions", q)
     with np.errstate(over="ignore"):
         norms = np.linalg.norm(q, axis=-1)
-    off = np.argwhere(np.abs(norms - 1.0) > NORM_TOLERANCE)
-    if off.size:
-        first = tuple(off[0])
-        raise ValueError(
-            f"{_at('quaternions', off[0])} = {q[first].tolist()} has norm {norms[first]:.6g}: "
-            f"not a unit quaternion (off by more than {NORM_TOLERANCE:g})"
-        )
-    return q / norms[..., None]
+    off = np.argwhere(~(np.abs(norms - 1.0) <= NORM_TOLERANCE))[0]
+    raise ValueError(
+        f"{_at('quaternions', off)} = {q[tuple(off)].tolist()} has norm {norms[tuple(off)]:.6g}: "
+        f"not a unit quaternion (off by more than {NORM_TOLERANCE:g})"
+    )
 
 
 def _times(given: Any, n: int, closed: bool) -> FloatArray:
-    t = _numbers("times", given)
+    t = _array("times", given)
     if t.shape != (n + closed,):
+        _refuse_infinite("times", t)
         wanted = f"({n + closed},)" + (" (one more than keyframes: the return)" if closed else "")
         raise ValueError(f"times has shape {t.shape}: expected {wanted} for {n} keyframes")
-    with np.errstate(over="ignore"):
-        steps, span = np.diff(t), t[-1] - t[0]
-    stuck = np.flatnonzero(~(steps > 0.0))
-    if stuck.size:
-        i = int(stuck[0])
-        raise ValueError(
-            f"times[{i + 1}] = {float(t[i + 1])!r} does not exceed times[{i}] = {float(t[i])!r}: "
-            "times must strictly increase"
-        )
-    if not np.isfinite(span):
+    stuck = _first_stuck(t)
+    if stuck < 0:
+        return t.copy()
+    _refuse_infinite("times", t)
+    if stuck == t.size:
         raise ValueError(f"times span {t[0]!r} to {t[-1]!r}: too long for float64")
-    return t
+    raise ValueError(
+        f"times[{stuck}] = {float(t[stuck])!r} does not exceed times[{stuck - 1}] = "
+        f"{float(t[stuck - 1])!r}: times must strictly increase"
+    )
+
+
+@compiled
+def _first_stuck(t):
+    """The first index whose time does not exceed the one before; the size if the span is infinite;
+    otherwise -1."""
+    for i in range(1, t.size):
+        if not t[i] > t[i - 1]:
+            return i
+    return -1 if abs(t[t.size - 1] - t[0]) < math.inf else t.size
 
 
 def _refuse_antipodes(keyframes: Keyframes) -> None:

@@ -19,6 +19,7 @@ from quatspline import primitives as p
 from quatspline._jit import compiled
 
 FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
 
 ANTIPODAL = 4 * np.finfo(float).eps
 """Quaternions whose sum is shorter than this have no shortest arc between them."""

@@ -67,21 +67,35 @@ def load(path: Path, prefix: str) -> ModuleType:
 
 def folders() -> list[Path]:
     """Where files with schemes are looked for."""
-    extra = [Path(p) for p in os.environ.get(FOLDERS, "").split(os.pathsep) if p]
-    return [PACKAGE / "schemes", shipped("baselines"), *extra]
+    return list(_folders(os.environ.get(FOLDERS, "")))
+
+
+@cache
+def _folders(extra: str) -> tuple[Path, ...]:
+    given = (Path(p) for p in extra.split(os.pathsep) if p)
+    return (PACKAGE / "schemes", shipped("baselines"), *given)
 
 
 def found() -> dict[str, Found]:
     """Every scheme by name, those that cannot be used included, with the reason."""
-    files = (path for folder in folders() for path in sorted(folder.glob("[!_]*.py")))
-    once = {path.resolve(): path for path in reversed(list(files))}  # the first folder that has it
-    return _found(tuple(reversed(once.values())))
+    places = _folders(os.environ.get(FOLDERS, ""))
+    return _found(places, tuple(map(_changed, places)))
+
+
+def _changed(folder: Path) -> int:
+    """When files were last added to a folder or taken from it."""
+    try:
+        return os.stat(folder).st_mtime_ns
+    except OSError:
+        return 0
 
 
 @cache
-def _found(files: tuple[Path, ...]) -> dict[str, Found]:
+def _found(places: tuple[Path, ...], changed: tuple[int, ...]) -> dict[str, Found]:
+    files = [path for folder in places for path in sorted(folder.glob("[!_]*.py"))]
+    once = {path.resolve(): path for path in reversed(files)}  # the first folder that has it
     everything: dict[str, Found] = {}
-    for item in _discover(files):
+    for item in _discover(tuple(reversed(once.values()))):
         if item.name in everything:
             raise ValueError(
                 f"two schemes are called {item.name!r}: {everything[item.name].origin} and {item.origin}"

@@ -61,12 +61,14 @@ def _blend(q, h, sign, i, tension, continuity, bias, v):
 
 @fit_kernel
 def FIT(q, h, closed, sign, parameters, segments, report):
-    """Kochanek-Bartels segments; parameters: ends, then tension, continuity, bias by keyframe."""
-    n = q.shape[0]
+    """Kochanek-Bartels segments; parameters: ends, then (or all 0) T, C, B by keyframe."""
+    n, plain = q.shape[0], parameters.size == 1
     v, time, x = np.empty((n, 2, 3)), np.empty(5), np.empty((5, 3))
     for i in range(n):
         if closed or 0 < i < n - 1:
-            t, c, b = parameters[1 + i], parameters[1 + n + i], parameters[1 + 2 * n + i]
+            t, c, b = 0.0, 0.0, 0.0
+            if not plain:
+                t, c, b = parameters[1 + i], parameters[1 + n + i], parameters[1 + 2 * n + i]
             _blend(q, h, sign, i, t, c, b, v[i])
         else:
             end = end_velocity(q, h, i, 3, parameters[0], time, x)

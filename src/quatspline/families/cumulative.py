@@ -22,8 +22,19 @@ from quatspline._jit import (
     inlined,
     sample_kernel,
 )
+from quatspline.families.quintics import bound, quintic, quintic_jet
 from quatspline.families.segments import Family
-from quatspline.primitives import cross, mul, polar, sincos, sincos_near, unrotate
+from quatspline.primitives import (
+    NEAR,
+    SMALL,
+    cross,
+    mul,
+    polar,
+    sincos,
+    sincos_near,
+    sincos_small,
+    unrotate,
+)
 
 # notation: the constants of a segment are Q_0 (4), Q_0 n_1 (4), n_1, n_2, n_3 (9), and the six
 # coefficients of theta_1, theta_2, theta_3 from u^0 to u^5 (18).
@@ -75,57 +86,20 @@ def set_turn(segments, i, k, length, nx, ny, nz, c0, c1, c2, c3, c4, c5):
         segments[i, Q0N1 + 3] = c
 
 
-@inlined
-def bound(c0, c1, c2, c3, c4, c5):
-    """A bound of |f| on [0, 1]: the largest Bernstein coefficient of degree 5."""
-    b1 = c0 + c1 / 5
-    b2 = c0 + 2 * c1 / 5 + c2 / 10
-    b3 = c0 + 3 * c1 / 5 + 3 * c2 / 10 + c3 / 10
-    b4 = c0 + 4 * c1 / 5 + 6 * c2 / 10 + 4 * c3 / 10 + c4 / 5
-    b5 = c0 + c1 + c2 + c3 + c4 + c5
-    return max(abs(c0), abs(b1), abs(b2), abs(b3), abs(b4), abs(b5))
+# Kernels: `near` for half angles up to NEAR, `small` for outer factors up to SMALL.
 
 
-@inlined
-def hermite(f0, d0, c0, f1, d1, c1):
-    """Coefficients of the quintic with values f, slopes d, second derivatives c at u = 0 and 1."""
-    rise = f1 - f0 - d0 - 0.5 * c0
-    slope = d1 - d0 - c0
-    bend = c1 - c0
-    return (
-        f0,
-        d0,
-        0.5 * c0,
-        10.0 * rise - 4.0 * slope + 0.5 * bend,
-        -15.0 * rise + 7.0 * slope - bend,
-        6.0 * rise - 3.0 * slope + 0.5 * bend,
-    )
-
-
-@inlined
-def _angle(s, p, j, u):
-    return (
-        (((s[p + 5, j] * u + s[p + 4, j]) * u + s[p + 3, j]) * u + s[p + 2, j]) * u + s[p + 1, j]
-    ) * u + s[p, j]
-
-
-@inlined
-def _angle_jet(s, p, j, u):
-    """theta, theta', theta'' with respect to u."""
-    a, b, c, d, e = s[p + 5, j], s[p + 4, j], s[p + 3, j], s[p + 2, j], s[p + 1, j]
-    f0 = ((((a * u + b) * u + c) * u + d) * u + e) * u + s[p, j]
-    f1 = (((5.0 * a * u + 4.0 * b) * u + 3.0 * c) * u + 2.0 * d) * u + e
-    f2 = ((20.0 * a * u + 12.0 * b) * u + 6.0 * c) * u + 2.0 * d
-    return f0, f1, f2
-
-
-def _orientation(near: bool) -> Kernel:
+def _orientation(near: bool, small: bool = False) -> Kernel:
     def kernel(sheet, n):
         s = carray(sheet, (ROWS, BLOCK))
         for j in range(n):
             u = s[0, j]
-            a, b, c = _angle(s, _P, j, u), _angle(s, _P + 6, j, u), _angle(s, _P + 12, j, u)
-            if near:
+            a, b, c = quintic(s, _P, j, u), quintic(s, _P + 6, j, u), quintic(s, _P + 12, j, u)
+            if small:
+                s1, c1 = sincos_small(a)
+                s2, c2 = sincos_near(b)
+                s3, c3 = sincos_small(c)
+            elif near:
                 s1, c1 = sincos_near(a)
                 s2, c2 = sincos_near(b)
                 s3, c3 = sincos_near(c)
@@ -151,15 +125,18 @@ def _orientation(near: bool) -> Kernel:
     return sample_kernel(kernel)
 
 
-def _velocity(near: bool) -> Kernel:
+def _velocity(near: bool, small: bool = False) -> Kernel:
     def kernel(sheet, n):
         s = carray(sheet, (ROWS, BLOCK))
         for j in range(n):
             u = s[0, j]
-            _, r1, _ = _angle_jet(s, _P, j, u)
-            b, r2, _ = _angle_jet(s, _P + 6, j, u)
-            c, r3, _ = _angle_jet(s, _P + 12, j, u)
-            if near:
+            _, r1, _ = quintic_jet(s, _P, j, u)
+            b, r2, _ = quintic_jet(s, _P + 6, j, u)
+            c, r3, _ = quintic_jet(s, _P + 12, j, u)
+            if small:
+                s2, c2 = sincos_near(b)
+                s3, c3 = sincos_small(c)
+            elif near:
                 s2, c2 = sincos_near(b)
                 s3, c3 = sincos_near(c)
             else:
@@ -190,45 +167,53 @@ def _velocity(near: bool) -> Kernel:
 
 @inlined
 def _join(sn, cs, nx, ny, nz, r1, r2, x, y, z, ax, ay, az):
-    """Half rates (omega, alpha)/2 behind a factor: turned into its frame, its own part added.
+    """Half of alpha behind a factor: turned into its frame, its own part added.
 
-    alpha <- R^T alpha + R^T omega x 2 theta' n + 2 theta'' n, here with halved rates.
+    alpha <- R^T alpha + R^T omega x 2 theta' n + 2 theta'' n = R^T (alpha + omega x 2 theta' n)
+    + 2 theta'' n, for R leaves n in its place; here with halved rates.
     """
-    x, y, z = unrotate(sn, cs, nx, ny, nz, x, y, z)
-    ax, ay, az = unrotate(sn, cs, nx, ny, nz, ax, ay, az)
     tx, ty, tz = cross(x, y, z, nx, ny, nz)
     k = 2.0 * r1
-    return (
-        x + r1 * nx,
-        y + r1 * ny,
-        z + r1 * nz,
-        ax + k * tx + r2 * nx,
-        ay + k * ty + r2 * ny,
-        az + k * tz + r2 * nz,
-    )
+    x, y, z = unrotate(sn, cs, nx, ny, nz, ax + k * tx, ay + k * ty, az + k * tz)
+    return x + r2 * nx, y + r2 * ny, z + r2 * nz
 
 
-def _acceleration(near: bool) -> Kernel:
+def _acceleration(near: bool, small: bool = False) -> Kernel:
     def kernel(sheet, n):
         s = carray(sheet, (ROWS, BLOCK))
         for j in range(n):
             u = s[0, j]
-            _, r1, e1 = _angle_jet(s, _P, j, u)
-            b, r2, e2 = _angle_jet(s, _P + 6, j, u)
-            c, r3, e3 = _angle_jet(s, _P + 12, j, u)
-            if near:
+            _, r1, e1 = quintic_jet(s, _P, j, u)
+            b, r2, e2 = quintic_jet(s, _P + 6, j, u)
+            c, r3, e3 = quintic_jet(s, _P + 12, j, u)
+            if small:
+                s2, c2 = sincos_near(b)
+                s3, c3 = sincos_small(c)
+            elif near:
                 s2, c2 = sincos_near(b)
                 s3, c3 = sincos_near(c)
             else:
                 s2, c2 = sincos(b)
                 s3, c3 = sincos(c)
-            nx, ny, nz = s[_N, j], s[_N + 1, j], s[_N + 2, j]
-            x, y, z, ax, ay, az = r1 * nx, r1 * ny, r1 * nz, e1 * nx, e1 * ny, e1 * nz
-            x, y, z, ax, ay, az = _join(
-                s2, c2, s[_N + 3, j], s[_N + 4, j], s[_N + 5, j], r2, e2, x, y, z, ax, ay, az
-            )
-            x, y, z, ax, ay, az = _join(
-                s3, c3, s[_N + 6, j], s[_N + 7, j], s[_N + 8, j], r3, e3, x, y, z, ax, ay, az
+            px, py, pz = s[_N + 3, j], s[_N + 4, j], s[_N + 5, j]
+            mx, my, mz = unrotate(s2, c2, px, py, pz, s[_N, j], s[_N + 1, j], s[_N + 2, j])
+            # behind two factors: omega = r1 m + r2 p, alpha = e1 m + 2 r1 r2 m x p + e2 p
+            tx, ty, tz = cross(mx, my, mz, px, py, pz)
+            k = 2.0 * r1 * r2
+            ax, ay, az = _join(
+                s3,
+                c3,
+                s[_N + 6, j],
+                s[_N + 7, j],
+                s[_N + 8, j],
+                r3,
+                e3,
+                r1 * mx + r2 * px,
+                r1 * my + r2 * py,
+                r1 * mz + r2 * pz,
+                e1 * mx + k * tx + e2 * px,
+                e1 * my + k * ty + e2 * py,
+                e1 * mz + k * tz + e2 * pz,
             )
             rate = 2.0 * s[1, j] * s[1, j]
             s[RESULT, j] = rate * ax
@@ -238,9 +223,16 @@ def _acceleration(near: bool) -> Kernel:
     return sample_kernel(kernel)
 
 
-CUMULATIVE = Family(
-    SIZE,
-    near=(_orientation(True), _velocity(True), _acceleration(True)),
-    far=(_orientation(False), _velocity(False), _acceleration(False)),
-)
+_FAR = (_orientation(False), _velocity(False), _acceleration(False))
+
+CUMULATIVE = Family(SIZE, near=(_orientation(True), _velocity(True), _acceleration(True)), far=_FAR)
 """Evaluates (1) and its rates."""
+
+MIDDLE = Family(
+    SIZE,
+    near=(_orientation(True, True), _velocity(True, True), _acceleration(True, True)),
+    far=_FAR,
+)
+"""The same where the outer factors are small: a fit kernel counts their angles SIDE times."""
+
+SIDE = NEAR / SMALL

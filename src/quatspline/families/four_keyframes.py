@@ -16,28 +16,38 @@ derivative of the parabola through three keyframes.  Ghost keyframes repeat the 
 
 from __future__ import annotations
 
-from quatspline._jit import fit_kernel, inlined
-from quatspline.families.cumulative import bound, hermite, set_base, set_turn
-from quatspline.primitives import log_between, polar
+import numpy as np
+
+from quatspline._jit import compiled, fit_kernel, inlined
+from quatspline.families.cumulative import SIDE, set_base, set_turn
+from quatspline.families.quintics import bound, hermite
+from quatspline.families.segments import REACH
+from quatspline.primitives import turn
 
 
-@inlined
-def _step(q, i, sign, closed):
-    """|D_i| and the axis of D_i, with the wrap of closed curves; 0 beyond the ends of open ones."""
+@compiled
+def _steps(q, sign, closed, d):
+    """|D_j| and the axis of D_j into the rows of d (4, n + 2 or n + 1), column 0 being j = -1.
+
+    Closed curves wrap; beyond the ends of open ones steps are zero.
+    """
     n = q.shape[0]
-    if not closed and (i < 0 or i >= n - 1):
-        return 0.0, 0.0, 0.0, 0.0
-    if i < 0:
-        i += n
-    elif i >= n:
-        i -= n
-    j, s = i + 1, 1.0
-    if j == n:
-        j, s = 0, sign
-    x, y, z = log_between(
-        q[i, 0], q[i, 1], q[i, 2], q[i, 3], s * q[j, 0], s * q[j, 1], s * q[j, 2], s * q[j, 3]
-    )
-    return polar(x, y, z)
+    length, nx, ny, nz = d[0], d[1], d[2], d[3]
+    for j in range(n - 1):
+        length[j + 1], nx[j + 1], ny[j + 1], nz[j + 1] = turn(
+            q[j, 0], q[j, 1], q[j, 2], q[j, 3],
+            q[j + 1, 0], q[j + 1, 1], q[j + 1, 2], q[j + 1, 3],
+        )  # fmt: skip
+    last = d.shape[1] - 1
+    for c in range(4):
+        d[c, 0] = d[c, last] = 0.0
+    if closed:
+        length[n], nx[n], ny[n], nz[n] = turn(
+            q[n - 1, 0], q[n - 1, 1], q[n - 1, 2], q[n - 1, 3],
+            sign * q[0, 0], sign * q[0, 1], sign * q[0, 2], sign * q[0, 3],
+        )  # fmt: skip
+        for c in range(4):
+            d[c, 0], d[c, last] = d[c, n], d[c, 1]
 
 
 @inlined
@@ -67,30 +77,29 @@ def _bound(c):
 
 
 @inlined
-def _set(segments, i, k, v, c):
-    set_turn(segments, i, k, v[0], v[1], v[2], v[3], c[0], c[1], c[2], c[3], c[4], c[5])
+def _set(segments, i, k, d, j, c):
+    set_turn(segments, i, k, d[0, j], d[1, j], d[2, j], d[3, j], c[0], c[1], c[2], c[3], c[4], c[5])
 
 
 @fit_kernel
 def FIT(q, h, closed, sign, parameters, segments, report):
     """Constants of (1); parameters[0] is kappa."""
     k = 2.0 * parameters[0]
-    a, b = _step(q, -1, sign, closed), _step(q, 0, sign, closed)
+    d = np.empty((4, h.size + 2))
+    _steps(q, sign, closed, d)
     h0, h1, h2 = _spacing(h, -1, closed), h[0], _spacing(h, 1, closed)
     f1, f2, f3 = _exponents(h0, h1, h2, k)
     m1, m2, m3 = _bound(f1), _bound(f2), _bound(f3)
     reach = 0.0
     for i in range(h.size):
-        c = _step(q, i + 1, sign, closed)
         after = _spacing(h, i + 1, closed)
         if i > 0 and not (h1 == h0 and h[i] == h1 and after == h2):
             h0, h1, h2 = h[i - 1], h[i], after
             f1, f2, f3 = _exponents(h0, h1, h2, k)
             m1, m2, m3 = _bound(f1), _bound(f2), _bound(f3)
         set_base(segments, i, q[i, 0], q[i, 1], q[i, 2], q[i, 3])
-        _set(segments, i, 0, a, f1)
-        _set(segments, i, 1, b, f2)
-        _set(segments, i, 2, c, f3)
-        reach = max(reach, a[0] * m1, b[0] * m2, c[0] * m3)
-        a, b = b, c
-    report[3] = reach
+        _set(segments, i, 0, d, i, f1)
+        _set(segments, i, 1, d, i + 1, f2)
+        _set(segments, i, 2, d, i + 2, f3)
+        reach = max(reach, SIDE * max(d[0, i] * m1, d[0, i + 2] * m3), d[0, i + 1] * m2)
+    report[REACH] = reach

@@ -23,7 +23,7 @@ from numba import carray
 
 from quatspline import primitives as sines
 from quatspline._jit import BLOCK, CONSTANTS, RESULT, ROWS, Kernel, inlined, sample_kernel
-from quatspline.families.cumulative import hermite
+from quatspline.families.quintics import hermite, quintic, quintic_jet
 from quatspline.families.segments import Family
 from quatspline.primitives import cross, mul, sinc, sinc_near
 
@@ -150,26 +150,6 @@ def set_end_rates(segments, i, y):
 
 
 @inlined
-def _value(s, p, j, u):
-    return (
-        (((s[p + 5, j] * u + s[p + 4, j]) * u + s[p + 3, j]) * u + s[p + 2, j]) * u + s[p + 1, j]
-    ) * u + s[p, j]
-
-
-@inlined
-def _slope(s, p, j, u):
-    a, b, c, d, e = s[p + 5, j], s[p + 4, j], s[p + 3, j], s[p + 2, j], s[p + 1, j]
-    return (((5.0 * a * u + 4.0 * b) * u + 3.0 * c) * u + 2.0 * d) * u + e
-
-
-@inlined
-def _bend(s, p, j, u):
-    return ((20.0 * s[p + 5, j] * u + 12.0 * s[p + 4, j]) * u + 6.0 * s[p + 3, j]) * u + (
-        2.0 * s[p + 2, j]
-    )
-
-
-@inlined
 def _jacobian(near, x, y, z):
     """a, b, a1, b1 at phi = (x, y, z)."""
     r = x * x + y * y + z * z
@@ -184,7 +164,7 @@ def _orientation(near: bool) -> Kernel:
         s = carray(sheet, (ROWS, BLOCK))
         for j in range(n):
             u = s[0, j]
-            x, y, z = _value(s, _P, j, u), _value(s, _P + 6, j, u), _value(s, _P + 12, j, u)
+            x, y, z = quintic(s, _P, j, u), quintic(s, _P + 6, j, u), quintic(s, _P + 12, j, u)
             r = x * x + y * y + z * z
             if near:
                 k, c = sinc_near(r)
@@ -206,8 +186,9 @@ def _velocity(near: bool) -> Kernel:
         s = carray(sheet, (ROWS, BLOCK))
         for j in range(n):
             u = s[0, j]
-            x, y, z = _value(s, _P, j, u), _value(s, _P + 6, j, u), _value(s, _P + 12, j, u)
-            dx, dy, dz = _slope(s, _P, j, u), _slope(s, _P + 6, j, u), _slope(s, _P + 12, j, u)
+            x, dx, _ = quintic_jet(s, _P, j, u)
+            y, dy, _ = quintic_jet(s, _P + 6, j, u)
+            z, dz, _ = quintic_jet(s, _P + 12, j, u)
             a, b, _, _ = _jacobian(near, x, y, z)
             tx, ty, tz = cross(x, y, z, dx, dy, dz)
             ux, uy, uz = cross(x, y, z, tx, ty, tz)
@@ -224,9 +205,9 @@ def _acceleration(near: bool) -> Kernel:
         s = carray(sheet, (ROWS, BLOCK))
         for j in range(n):
             u = s[0, j]
-            x, y, z = _value(s, _P, j, u), _value(s, _P + 6, j, u), _value(s, _P + 12, j, u)
-            dx, dy, dz = _slope(s, _P, j, u), _slope(s, _P + 6, j, u), _slope(s, _P + 12, j, u)
-            ex, ey, ez = _bend(s, _P, j, u), _bend(s, _P + 6, j, u), _bend(s, _P + 12, j, u)
+            x, dx, ex = quintic_jet(s, _P, j, u)
+            y, dy, ey = quintic_jet(s, _P + 6, j, u)
+            z, dz, ez = quintic_jet(s, _P + 12, j, u)
             a, b, a1, b1 = _jacobian(near, x, y, z)
             ax, ay, az = half_acceleration(a, b, a1, b1, x, y, z, dx, dy, dz, ex, ey, ez)
             rate = 2.0 * s[1, j] * s[1, j]

@@ -14,7 +14,8 @@ import numpy as np
 
 from quatspline._jit import call_fit, compiled
 from quatspline.curve import Curve
-from quatspline.families.segments import SegmentCurve, sample
+from quatspline.families.driver import described, sample
+from quatspline.families.segments import SegmentCurve
 from quatspline.keyframes import Keyframes
 from quatspline.quaternion import FloatArray
 
@@ -50,7 +51,7 @@ def _compiled(
     )
     evaluate = (
         curve.kernels[0].address,
-        curve.segment_knots,
+        described(curve.segment_knots, segments, k.signs, k.closed),
         k.times[0],
         curve._slack,
         t,
@@ -77,11 +78,11 @@ def _interpreted(
     def generate(repeats: int) -> FloatArray:
         for _ in range(repeats):
             if protocol == "solve-once":
-                scheme.from_keyframes(keyframes, **options)._evaluate(t, 0, out, 1)
+                scheme.from_keyframes(keyframes, **options)._evaluate(t, 0, out.reshape(-1), 1)
                 continue
             for i in range(t.size):
                 curve = scheme.from_keyframes(keyframes, **options)
-                curve._evaluate(t[i : i + 1], 0, out[i : i + 1], 1)
+                curve._evaluate(t[i : i + 1], 0, out[i].reshape(-1), 1)
         return out[:, 0]
 
     return generate
@@ -89,21 +90,21 @@ def _interpreted(
 
 @compiled
 def _per_frame(
-    repeats, fit, tracks, h, closed, signs, parameters, segments, report, address, knots, origin,
+    repeats, fit, tracks, h, closed, signs, parameters, segments, report, address, curve, origin,
     slack, t, out,
 ):  # fmt: skip
     for _ in range(repeats):
         for i in range(t.size):
             call_fit(fit, tracks[0], h, closed, signs[0], parameters, segments[0], report[0])
             one = out[4 * i : 4 * i + 4]
-            sample(address, 0, knots, segments, closed, signs, origin, slack, t[i : i + 1], one)
+            sample(address, 0, curve, origin, slack, t[i : i + 1], one)
 
 
 @compiled
 def _solve_once(
-    repeats, fit, tracks, h, closed, signs, parameters, segments, report, address, knots, origin,
+    repeats, fit, tracks, h, closed, signs, parameters, segments, report, address, curve, origin,
     slack, t, out,
 ):  # fmt: skip
     for _ in range(repeats):
         call_fit(fit, tracks[0], h, closed, signs[0], parameters, segments[0], report[0])
-        sample(address, 0, knots, segments, closed, signs, origin, slack, t, out)
+        sample(address, 0, curve, origin, slack, t, out)

@@ -13,7 +13,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 from quatspline.registry import PACKAGE, found
-from quatspline.report.findings import lines
+from quatspline.report import targets
+from quatspline.report.findings import lines, reader
+from quatspline.report.results import MANIFEST, read_json
 
 ROOT = PACKAGE.parents[1]
 REFERENCE = ROOT / "results" / "reference"
@@ -43,7 +45,21 @@ def schemes_block() -> str:
     return "\n".join(head + rows)
 
 
-BLOCKS: dict[str, Callable[[], str]] = {"findings": findings_block, "schemes": schemes_block}
+def speed_block() -> str:
+    """The speed targets with the machine that they were measured on, from the reference tables."""
+    run = read_json(REFERENCE / MANIFEST)
+    cpu, known = run["cpu"], run["versions"]
+    where = (
+        f"{cpu['model']}, {cpu['cores']} cores, Python {known['python']}, numba {known['numba']}"
+    )
+    return f"Measured on {where}, {run['end'][:10]}.\n\n{targets.markdown(reader(REFERENCE))}"
+
+
+BLOCKS: dict[str, Callable[[], str]] = {
+    "findings": findings_block,
+    "speed": speed_block,
+    "schemes": schemes_block,
+}
 
 
 def renewed(text: str) -> str:
@@ -59,7 +75,7 @@ def renewed(text: str) -> str:
 def adopt(results: Path) -> None:
     """Take the tables of a finished run as the reference that later runs are compared with."""
     REFERENCE.mkdir(parents=True, exist_ok=True)
-    for table in sorted([*results.glob("*.csv"), *results.glob("*.md")]):
+    for table in sorted([*results.glob("*.csv"), *results.glob("*.md"), results / MANIFEST]):
         if not re.fullmatch(r"figure\d", table.stem):
             shutil.copyfile(table, REFERENCE / table.name)
     PICTURES.mkdir(parents=True, exist_ok=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from quatspline.families.cumulative import CUMULATIVE
+from quatspline.families.cumulative import MIDDLE
 from quatspline.families.four_keyframes import FIT
 from quatspline.families.segments import SegmentCurve
 from quatspline.keyframes import Keyframes
@@ -32,7 +32,7 @@ class QuinticSpline(SegmentCurve):
     order = 3
     support = 4
     constant_rate = "interior"
-    family = CUMULATIVE
+    family = MIDDLE
     operations = {"exps per sample": 3, "logs per keyframe": 1}
 
     def _fit(self, keyframes: Keyframes, *, curvature: float = 1.0) -> None:

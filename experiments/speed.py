@@ -1,0 +1,125 @@
+"""Speed on fixed tasks: every scheme beside the floors of writing and of one sine and cosine."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from quatspline.experiment import Run
+from quatspline.instruments.speed import FILL, FLOORS, SINCOS, Task, measured, starts, tasks
+from quatspline.instruments.timing import LEAST
+from quatspline.registry import found, version
+from quatspline.report import style
+
+TITLE = "Speed"
+PAPER = False
+SERIAL = True
+KEYS = ["task", "scheme"]
+NOTE = (
+    "Medians of interleaved, calibrated rounds on one thread unless the task says otherwise, compilation and warm-up "
+    "apart; keyframes are a walk of 40-degree steps. times_fill and times_sincos: per item, over writing the result "
+    "and over one numpy sine and cosine an item in the same run. Slow peers do fewer items of the same span. "
+    "Iterative schemes solve to 1e-9. 'start' rows are seconds in new processes."
+)
+FORMATS = {
+    "seconds_median": ".3g",
+    "seconds_iqr": ".1g",
+    "nanoseconds_per_item": ".4g",
+    "times_fill": ".3g",
+    "times_sincos": ".3g",
+}
+ROUNDS = {"quick": 3, "full": 15}
+START = "start"
+
+
+def cells(run: Run) -> list[dict[str, str]]:
+    return [{"task": task.name} for task in tasks(run.rng("speed"), run.quick)] + [{"task": START}]
+
+
+def measure_cell(run: Run, task: str) -> list[dict[str, object]]:
+    rounds = ROUNDS["quick" if run.quick else "full"]
+    if task == START:
+        return _starts(rounds)
+    chosen = next(t for t in tasks(run.rng("speed"), run.quick) if t.name == task)
+    names = run.schemes or [name for name, item in found().items() if item.scheme is not None]
+    return _rows(chosen, run, names, rounds if chosen.keyframes < 1e6 else 3)
+
+
+def _rows(task: Task, run: Run, names: list[str], rounds: int) -> list[dict[str, object]]:
+    rows: list[dict[str, object]] = []
+    floors: dict[str, float] = {}
+    least = LEAST / 10 if run.quick else LEAST
+    for row in measured(task, names, rounds, run.seed, least):
+        base: dict[str, object] = {"task": task.name, "scheme": row.name, "unit": task.unit}
+        base |= {"keyframes": task.keyframes, "failure": row.failure}
+        if row.timing is None:
+            rows.append(base)
+            continue
+        each = row.timing.median / row.items
+        if row.name in FLOORS:
+            floors[row.name] = each
+        rows.append(
+            base
+            | {
+                "version": None if row.name in FLOORS else version(row.name),
+                "timed_items": row.items,
+                "seconds_median": row.timing.median,
+                "seconds_iqr": row.timing.iqr,
+                "nanoseconds_per_item": 1e9 * each,
+                "times_fill": each / floors[FILL],
+                "times_sincos": each / floors[SINCOS] if SINCOS in floors else None,
+            }
+        )
+    return rows
+
+
+def _starts(rounds: int) -> list[dict[str, object]]:
+    rows: list[dict[str, object]] = []
+    for name, seconds in starts(min(rounds, 5)):
+        low, middle, high = np.percentile(seconds, [25, 50, 75])
+        base: dict[str, object] = {
+            "task": START,
+            "scheme": name,
+            "unit": "process",
+            "timed_items": 1,
+        }
+        rows.append(base | {"seconds_median": float(middle), "seconds_iqr": float(high - low)})
+    return rows
+
+
+PANELS = ("evaluate", "one sample", "set-up")
+
+
+def draw(table: pd.DataFrame) -> Figure:
+    """Nanoseconds an item, in-house schemes in colour, peers hollow, the floors as lines."""
+    fig, panels = style.axes(style.PAGE, 6.4, 1, len(PANELS), sharey=True)
+    known = found()
+    order = table[(table["task"] == PANELS[0]) & table["seconds_median"].notna()]
+    names = [n for n in order.sort_values("nanoseconds_per_item")["scheme"] if n not in FLOORS]
+    for ax, task in zip(panels[0], PANELS, strict=True):
+        rows = table[(table["task"] == task) & table["seconds_median"].notna()].set_index("scheme")
+        for height, name in enumerate(names):
+            if name in rows.index:
+                looks = style.scheme_style(name) | {"linestyle": ""}
+                item = known.get(name)
+                peer = item is not None and item.scheme is not None and item.scheme.peer
+                face = {"markerfacecolor": "white"} if peer else {}
+                ax.plot(rows.loc[name, "nanoseconds_per_item"], height, **(looks | face))
+        for floor, dash in zip(FLOORS, ("-", ":"), strict=True):
+            if floor in rows.index:
+                ax.axvline(
+                    rows.loc[floor, "nanoseconds_per_item"], color="#999999", ls=dash, lw=0.8
+                )
+        unit = rows["unit"].iloc[0]
+        ax.set(xscale="log", title=task, xlabel=f"ns a {unit}", yticks=range(len(names)))
+    panels[0, 0].set_yticklabels(names)
+    panels[0, 0].set_ylim(-0.7, len(names) - 0.3)
+    style.letters(panels[0])
+    return fig
+
+
+def caption(table: pd.DataFrame) -> str:
+    return (
+        "Cost per sample of evaluating sorted samples of a curve through a thousand keyframes, of one sample a call, "
+        "and per keyframe of its set-up, medians; hollow: third-party libraries. Grey lines are floors: "
+        "writing the result (solid), one sine and cosine a sample (dotted)."
+    )
