@@ -92,12 +92,19 @@ def predicted(task: Task, size: int, least: int, budget: float) -> float:
     for rung in sizes:
         start = time.perf_counter()
         call = task(rung)
-        now = (time.perf_counter() - start, _seconds(call))
-        preparing, expected = (s * max(FACTOR, s / b) for s, b in zip(now, before, strict=True))
-        before = now
-        if max(preparing, expected) > budget:
+        preparing = time.perf_counter() - start
+        calling = _seconds(call)
+        if calling < budget / FACTOR and _grown(calling, before[1]) > budget:
+            calling = min(calling, _seconds(call))  # a hiccup is no growth
+        expected = _grown(calling, before[1])
+        if max(_grown(preparing, before[0]), expected) > budget:
             raise OverBudget
+        before = preparing, calling
     return expected
+
+
+def _grown(seconds: float, before: float) -> float:
+    return seconds * max(FACTOR, seconds / before if before > 0.0 else 0.0)
 
 
 def rungs(size: int, least: int) -> list[int]:
