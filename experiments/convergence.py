@@ -215,7 +215,8 @@ def draw(table: pd.DataFrame) -> Figure:
         ax.set_title(f"{name}\n{method}" if method else name, fontsize=8)
     for ax in panels[:, 0]:
         ax.set_ylabel("step angle (degrees)")
-    for ax in panels[-1]:
+    for ax in panels.flat[max(len(groups) - 4, 0) : len(groups)]:  # the lowest that are drawn
+        ax.tick_params(labelbottom=True)
         ax.set_xlabel("unevenness")
     fig.colorbar(image, ax=panels, label="share of sets solved", shrink=0.8)
     return fig
