@@ -162,6 +162,8 @@ def test_list_imports_no_table_no_figure(desk: Desk) -> None:
         (["list", "--all"], "unrecognized arguments: --all"),
         (["run", "--quick", "--full"], "not allowed with argument"),
         (["run", "--seed", "-1"], "argument --seed: '-1': a whole number, at least 0, is expected"),
+        (["run", "--jobs", "0"], "argument --jobs: '0': a whole number, at least 1, is expected"),
+        (["run", "--jobs", "2", "--dask", "tcp://a:1"], "not allowed with argument"),
         (["run", "missing"], "unknown experiment 'missing'"),
         (["run", "erors"], "unknown experiment 'erors': did you mean 'errors'?"),
         (["run", "errors", "--schemes", "quartik"], "did you mean 'quartic'?"),

@@ -7,6 +7,8 @@ step; what jumps stays put.  The next order is the control that must stay.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import pandas as pd
 
@@ -29,8 +31,8 @@ DENSE = 10
 """Samples a segment for the size of a quantity."""
 
 
-def jumps(curve: Curve) -> pd.DataFrame:
-    """Jumps of a single-track curve, one row a derivative order.
+def jumps(curve: Curve, orders: Sequence[int] = (0, 1, 2, 3)) -> pd.DataFrame:
+    """Jumps of a single-track curve, one row a derivative order asked for.
 
     Columns: order (0 to 3), quantity, unit, jump (largest over the knots, in its unit; lower is
     smoother), coarse_jump (with the tenfold step), size (largest on the curve), relative, and
@@ -38,16 +40,16 @@ def jumps(curve: Curve) -> pd.DataFrame:
     """
     at, step = _inner_knots(curve)
     dense = _dense(curve)
-    rows = []
-    before = 1.0  # the size of the order below, a step of which is a scale where this order is 0
-    for order, (quantity, unit) in enumerate(zip(QUANTITIES, UNITS, strict=True)):
+    rows, sizes = [], dict[int, float]()
+    for order in orders:
+        # the size of the order below, a step of which is a scale where this order is 0
+        before = sizes.get(order - 1) or (_size(curve, dense, order - 1) if order else 1.0)
         coarse, fine = (_jump(curve, at, share * step, order) for share in STEPS)
-        size = _size(curve, dense, order)
+        size = sizes[order] = _size(curve, dense, order)
         relative = fine / size if size > 0.0 else 0.0
         scale = max(size, before / float(np.diff(curve.times).mean()))
         smooth = fine <= CONTINUOUS[order] * scale or fine <= FALLING * coarse
-        before = size
-        rows.append((order, quantity, unit, fine, coarse, size, relative, smooth))
+        rows.append((order, QUANTITIES[order], UNITS[order], fine, coarse, size, relative, smooth))
     names = ["order", "quantity", "unit", "jump", "coarse_jump", "size", "relative", "continuous"]
     return pd.DataFrame(rows, columns=names)
 

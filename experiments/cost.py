@@ -1,0 +1,160 @@
+"""What every scheme costs: set-up and evaluation apart, against the size; latency; memory."""
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from quatspline import registry
+from quatspline.curve import Curve
+from quatspline.instruments.cost import Call, Task, costs, operations, peak_bytes
+from quatspline.report import style
+from quatspline.running import Run
+from quatspline.trajectories.smooth import tumble
+
+TITLE = "Cost of set-up and evaluation"
+PAPER = False
+SERIAL = True
+KEYS = ["task", "size", "scheme"]
+BUDGET, BUDGET_QUICK = 5.0, 0.1
+KEYFRAMES = 100
+NOTE = (
+    "Public calls, validation included, one thread, on a smooth motion, times 0, 1, 2, ... . set-up: the curve "
+    f"through size keyframes. evaluation: orientations at size times in order, {KEYFRAMES} keyframes. one sample: a "
+    "call with a scalar time, size keyframes. seconds_* are medians and interquartile ranges of interleaved rounds, "
+    "a single call where it is slow. A call that, by smaller ones, would take over "
+    f"{BUDGET:g} s ({BUDGET_QUICK:g} s at quick size) is over budget. times_fastest is the time over the "
+    "fastest scheme's for a task and size. exps, logs, slerps are counts for one keyframe (set-up, all iterations) or "
+    "sample, none for libraries. times_memory is the peak of resident memory over the bytes of the keyframes (set-up) "
+    "or samples (evaluation), at full size only."
+)
+FORMATS = {"seconds_median": ".3e", "seconds_iqr": ".1e", "times_fastest": ".1f"}
+SETUP = (5, 100, 1000, 10_000, 100_000, 1_000_000)
+EVALUATION = (1, 10, 100, 1000, 10_000, 100_000, 1_000_000, 10_000_000)
+LATENCY = (5, 1000, 100_000)
+SIZES = {"set-up": SETUP, "evaluation": EVALUATION, "one sample": LATENCY}
+QUICK = {"set-up": (5, 100, 1000), "evaluation": (1, 100, 10_000), "one sample": (1000,)}
+LEAST = {"set-up": 5, "evaluation": 1, "one sample": 5}
+MEMORY = {"set-up": 100_000, "evaluation": 1_000_000, "one sample": None}
+"""The size at which memory is measured."""
+BYTES = 32
+"""Of a quaternion."""
+BETWEEN = 2.5
+"""A time within every curve's domain, not at a keyframe."""
+MEMORY_SHARE = 0.2
+"""Memory is measured for calls that take up to this share of the budget: it takes two more."""
+
+
+def cells(run: Run) -> list[dict[str, Any]]:
+    sizes = QUICK if run.quick else SIZES
+    return [{"task": task, "size": size} for task, all_of in sizes.items() for size in all_of]
+
+
+def measure_cell(run: Run, task: str, size: int) -> list[dict[str, Any]]:
+    names = run.schemes or registry.schemes()
+    tasks = {name: TASKS[task](registry.scheme(name)) for name in names}
+    budget = BUDGET_QUICK if run.quick else BUDGET
+    effort: dict[str, Any] = {"rounds": 7, "duration": 1e-2}
+    if run.quick:
+        effort = {"rounds": 3, "duration": 2e-3}
+    found = costs(tasks, size, least=LEAST[task], budget=budget, seed=run.seed, **effort)
+    rows = []
+    for name in names:
+        cost = found[name]
+        row = {"task": task, "size": size, "scheme": name, "version": registry.version(name)}
+        row |= {"failure": cost.failure, **_counts(task, name)}
+        row |= {"seconds_median": cost.seconds, "seconds_iqr": cost.iqr}
+        if not run.quick and size == MEMORY[task] and cost.seconds < MEMORY_SHARE * budget:
+            row["times_memory"] = peak_bytes(tasks[name](size)) / (BYTES * size)
+        rows.append(row)
+    return rows
+
+
+def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
+    fastest = table.groupby(["task", "size"])["seconds_median"].transform("min")
+    return table.assign(times_fastest=table["seconds_median"] / fastest)
+
+
+# -- tasks --------------------------------------------------------------------------------------
+
+
+def _setup(cls: type[Curve]) -> Task:
+    def prepare(count: int) -> Call:
+        t = np.arange(float(count))
+        q = tumble(t)
+        return lambda: cls(t, q)
+
+    return prepare
+
+
+def _evaluation(cls: type[Curve]) -> Task:
+    curve = cache(lambda: _curve(cls, KEYFRAMES))
+
+    def prepare(samples: int) -> Call:
+        evaluate, at = curve(), np.linspace(0.0, KEYFRAMES - 1.0, samples)
+        return lambda: evaluate(at)
+
+    return prepare
+
+
+def _latency(cls: type[Curve]) -> Task:
+    def prepare(count: int) -> Call:
+        curve = _curve(cls, count)
+        return lambda: curve(BETWEEN)
+
+    return prepare
+
+
+TASKS: dict[str, Callable[[type[Curve]], Task]] = {
+    "set-up": _setup,
+    "evaluation": _evaluation,
+    "one sample": _latency,
+}
+
+
+def _curve(cls: type[Curve], count: int) -> Curve:
+    t = np.arange(float(count))
+    return cls(t, tumble(t))
+
+
+@cache
+def _counts(task: str, name: str) -> dict[str, float]:
+    try:
+        curve = _curve(registry.scheme(name), KEYFRAMES)
+    except Exception:  # its row gives the reason
+        return {}
+    return operations(curve, "keyframe" if task == "set-up" else "sample")
+
+
+# -- figure -------------------------------------------------------------------------------------
+
+
+def draw(table: pd.DataFrame) -> Figure:
+    fig, panels = style.axes(style.PAGE, 5.2, 1, 2)
+    measured = table[table["seconds_median"].notna()]
+    for ax, task, unit in zip(panels[0], SIZES, ("keyframe", "sample"), strict=False):
+        for name, rows in measured[measured["task"] == task].groupby("scheme"):
+            ours = registry.scheme(str(name)).peer is None
+            looks = style.scheme_style(str(name)) | {"ms": 2.5 if ours else 0.0}
+            y = rows["seconds_median"] / rows["size"]
+            ax.plot(rows["size"], y, lw=1.1 if ours else 0.6, label=name, **looks)
+        ax.set(xscale="log", yscale="log", title=task)
+        ax.set(xlabel=f"{unit}s", ylabel=f"seconds a {unit}")
+    style.letters(panels[0])
+    style.legend_of(fig, panels[0, 0], 5)
+    return fig
+
+
+def caption(table: pd.DataFrame) -> str:
+    winners = table[table["times_fastest"] == 1.0].sort_values("size").groupby("task").last()
+    named = [
+        f"{task} at {row['size']:,}: {row['scheme']} ({row['seconds_median']:.1e} s)"
+        for task, row in winners.iterrows()
+    ]
+    return (
+        "Seconds a keyframe of set-up, and seconds a sample of evaluation, against the size; libraries thin, without "
+        f"markers. Fastest at the largest size: {'; '.join(named)}."
+    )

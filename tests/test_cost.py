@@ -1,0 +1,146 @@
+"""Costs within a budget, by a clock of our own; memory; counts; the experiment's table."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from quatspline.instruments import cost
+from quatspline.registry import load, scheme, shipped
+from quatspline.running import Run
+
+AMPLE = 600.0
+"""A budget in seconds that no hiccup of a busy machine exceeds."""
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """The time, which only toy calls advance."""
+    now = [0.0]
+    monkeypatch.setattr(time, "perf_counter", lambda: now[0])
+    return now
+
+
+def toy(clock: list[float], seconds: Callable[[int], float], made: list[int]) -> cost.Task:
+    def task(size: int) -> cost.Call:
+        def call() -> None:
+            made.append(size)
+            clock[0] += seconds(size)
+
+        return call
+
+    return task
+
+
+def test_rungs_lead_up_to_a_size():
+    assert cost.rungs(1_000_000, 5) == [10, 100, 1000, 10_000, 100_000]
+    assert cost.rungs(100, 1) == [1, 10]
+    assert cost.rungs(5, 5) == [5]
+
+
+@pytest.mark.parametrize(("power", "factor"), [(0, 10), (1, 10), (2, 100)])
+def test_time_is_predicted_by_its_growth(clock, power, factor):
+    task = toy(clock, lambda size: 1e-6 * size**power, [])
+    predicted = cost.predicted(task, 1000, 1, budget=1e9)
+    assert predicted == pytest.approx(1e-6 * 100**power * factor)
+
+
+def test_a_call_over_budget_is_never_made(clock):
+    made: list[int] = []
+    found = cost.costs(
+        {"square": toy(clock, lambda size: 1e-6 * size**2, made)},
+        100_000,
+        budget=5.0,
+        rounds=3,
+        duration=0.01,
+    )
+    assert found["square"].failure == "over budget"
+    assert np.isnan(found["square"].seconds)
+    assert max(made) == 1000  # a second, from which 10,000 would take a hundred
+
+
+def test_fast_calls_are_timed_in_rounds_and_slow_ones_once(clock):
+    made: list[int] = []
+    tasks = {
+        "fast": toy(clock, lambda size: 1e-6 * size, []),
+        "slow": toy(clock, lambda size: 1e-3 * size, made),
+    }
+    found = cost.costs(tasks, 1000, budget=5.0, rounds=4, duration=0.01)
+    assert found["fast"].seconds == pytest.approx(1e-3)
+    assert found["fast"].iqr == pytest.approx(0.0, abs=1e-12)
+    assert found["fast"].rounds == 4
+    assert found["slow"].seconds == pytest.approx(1.0)
+    assert np.isnan(found["slow"].iqr)
+    assert made.count(1000) == 1
+
+
+def test_a_hiccup_is_not_taken_for_growth(clock):
+    hiccups = {10: [0.4]}
+
+    def seconds(size: int) -> float:
+        waits = hiccups.get(size, [])
+        return 1e-5 * size + (waits.pop() if waits else 0.0)
+
+    assert cost.predicted(toy(clock, seconds, []), 100, 1, 5.0) == pytest.approx(1e-3)
+
+
+def test_a_failure_is_told_and_the_others_are_timed(clock):
+    def broken(size: int) -> cost.Call:
+        raise ValueError("no such size")
+
+    tasks = {"broken": broken, "fast": toy(clock, lambda size: 1e-6, [])}
+    found = cost.costs(tasks, 10, budget=1.0, rounds=1, duration=1e-4)
+    assert found["broken"].failure == "ValueError: no such size"
+    assert found["fast"].failure is None
+
+
+def test_peak_memory_counts_what_compiled_code_allocates():
+    size = 32_000_000
+    one = cost.peak_bytes(lambda: np.ones(size // 8))
+    two = cost.peak_bytes(lambda: np.ones(size // 8) + np.ones(size // 8))  # three at once
+    if np.isnan(one):
+        pytest.skip("the system does not tell")
+    assert one == pytest.approx(size, rel=0.05)
+    assert 2 * size * 0.95 <= two <= 3 * size * 1.05
+
+
+def test_operations_hold_all_iterations():
+    q = np.array([[1, 0, 0, 0], [0.8, 0.6, 0, 0], [0.6, 0, 0.8, 0], [0, 0, 0.6, 0.8]])
+    curve = scheme("nielson")(None, q)
+    steps = curve.solve_report.iterations
+    assert cost.operations(curve, "keyframe") == {"exps": 0, "logs": 0, "slerps": 2 * steps}
+    assert cost.operations(curve, "sample") == {"exps": 0, "logs": 0, "slerps": 6}
+    peer = cost.operations(scheme("scipy-slerp")(None, q), "sample")
+    assert all(np.isnan(count) for count in peer.values())
+
+
+@pytest.mark.parametrize("task", ["set-up", "evaluation", "one sample"])
+def test_the_table_marks_the_fastest(task, monkeypatch):
+    module = load(shipped("experiments") / "cost.py", "experiment")
+    monkeypatch.setattr(module, "BUDGET_QUICK", AMPLE)
+    run = Run(quick=True, schemes=["slerp", "quartic", "scipy-slerp"])
+    rows = module.measure_cell(run, task, 100)
+    table = module.gather(run, pd.DataFrame(rows))
+    assert table["scheme"].tolist() == run.schemes
+    assert table["failure"].isna().all()
+    assert (table["seconds_median"] > 0.0).all()
+    assert table["times_fastest"].min() == 1.0
+    assert "Fastest at the largest size" in module.caption(table)
+
+
+def test_a_scheme_that_fails_is_a_row_of_the_table(monkeypatch):
+    module = load(shipped("experiments") / "cost.py", "experiment")
+    monkeypatch.setattr(module, "BUDGET_QUICK", AMPLE)
+    run = Run(quick=True, schemes=["slerp", "quartic"])
+
+    def failing(*arguments, **options):
+        raise ValueError("not today")
+
+    monkeypatch.setattr(scheme("quartic"), "_fit", failing)
+    rows = {row["scheme"]: row for row in module.measure_cell(run, "evaluation", 10)}
+    assert rows["quartic"]["failure"] == "ValueError: not today"
+    assert rows["slerp"]["failure"] is None
