@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import os
 import re
 import shutil
 from collections.abc import Iterator
@@ -17,10 +18,12 @@ import pandas as pd
 import pytest
 from matplotlib.figure import Figure
 
+from quatspline import running
 from quatspline.cli import main
 from quatspline.keyframes import prepare
 from quatspline.quaternion import exp
 from quatspline.registry import scheme
+from quatspline.report import page as page_module
 from quatspline.report.findings import FINDINGS, findings, reader
 from quatspline.report.page import Scene, motion, paper_scenes, write_page
 from quatspline.report.page.document import embedded
@@ -305,7 +308,65 @@ def test_a_motion_of_ones_own_is_thinned_and_says_what_does_not_apply() -> None:
     assert "closed" in refused["log-cubic"]
 
 
+def test_positions_of_ones_own_are_followed() -> None:
+    keyframes = prepare([0.0, 1.0, 3.0], exp(np.diag([0.1, 0.2, 0.3])))
+    places = np.array([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [4.0, 8.0, 0.0]])
+    scene = motion.own_scene("mine", "Mine", keyframes, places, ["slerp"])
+    np.testing.assert_allclose(scene.positions(np.array([0.5, 2.0])), [[2, 0, 0], [4, 4, 0]])
+    assert scene.scale == 0.25 * 8.0
+    still = motion.own_scene("mine", "Mine", keyframes, schemes=["slerp"])
+    assert not still.positions(np.array([0.5, 2.0])).any()
+    assert motion.player_data(still)["pair"] == ["slerp"]
+
+
+# -- after a run --------------------------------------------------------------------------------
+
+EXPERIMENT = """
+import pandas as pd
+TITLE, PAPER = "Small", False
+def measure(run):
+    return pd.DataFrame({"x": [1]})
+"""
+
+
+@pytest.fixture
+def small(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with a page that an experiment runs into; no motion is sampled."""
+    (tmp_path / "experiments").mkdir()
+    (tmp_path / "experiments" / "small.py").write_text(EXPERIMENT)
+    monkeypatch.setenv("QUATSPLINE_EXPERIMENTS", str(tmp_path / "experiments"))
+    monkeypatch.setattr(page_module, "paper_scenes", list)
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "report.html").write_text("stale")
+    return out
+
+
+def test_a_run_renews_the_page_that_is_there(small: Path) -> None:
+    assert running.run(["small"], out=small) == []
+    assert "csv-small" in (small / "report.html").read_text(encoding="utf-8")
+    assert "report.html" in json.loads((small / "manifest.json").read_text())["files"]
+    (small / "report.html").unlink()
+    assert running.run(["small"], out=small) == []
+    assert not (small / "report.html").exists()
+
+
+def test_a_page_that_cannot_be_written_costs_no_table(
+    small: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def broken(folder: Path) -> Path:
+        raise OSError("no room")
+
+    monkeypatch.setattr(page_module, "write_page", broken)
+    assert running.run(["small"], out=small) == ["report.html"]
+    assert "OSError: no room" in capsys.readouterr().err
+    assert (small / "small.csv").is_file()
+
+
 # -- in the browser -----------------------------------------------------------------------------
+
+REQUIRED = "QUATSPLINE_BROWSER"
+"""Set where a missing browser is a failure: in continuous integration."""
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 FLAGS = [
@@ -318,7 +379,8 @@ browsing = pytest.mark.browser
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
     if CHROMIUM is None:
-        pytest.skip("no chromium on this machine: install the system's package")
+        report = pytest.fail if os.environ.get(REQUIRED) else pytest.skip
+        report("no chromium on this machine: install the system's package")
     playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
     with playwright.sync_playwright() as driver:
         opened = driver.chromium.launch(executable_path=CHROMIUM, args=FLAGS)

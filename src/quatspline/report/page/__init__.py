@@ -8,12 +8,12 @@ from pathlib import Path
 
 from quatspline.report.page.document import document
 from quatspline.report.page.folder import Folder
-from quatspline.report.page.motion import Scene, paper_scenes
-from quatspline.report.results import MANIFEST, Results
+from quatspline.report.page.motion import Scene, own_scene, paper_scenes
+from quatspline.report.page.sections import SECTIONS, Section
+from quatspline.report.results import MANIFEST, PAGE, Results
 
-__all__ = ["PAGE", "Scene", "command", "paper_scenes", "write_page"]
+__all__ = ["PAGE", "Scene", "Section", "command", "own_scene", "paper_scenes", "write_page"]
 
-PAGE = "report.html"
 TITLE = "Orientation interpolation, measured"
 
 
@@ -33,7 +33,11 @@ def command(results_folder: str | Path, *, open_it: bool = False) -> int:
 
 
 def write_page(
-    folder: str | Path, *, title: str = TITLE, scenes: Sequence[Scene] | None = None
+    folder: str | Path,
+    *,
+    title: str = TITLE,
+    scenes: Sequence[Scene] | None = None,
+    sections: Sequence[Section] = SECTIONS,
 ) -> Path:
     """Write ``report.html`` into a folder of tables and enter it in the manifest there.
 
@@ -41,7 +45,8 @@ def write_page(
     ----------
     folder : with the tables, figures and manifest of a run
     title : the page's heading
-    scenes : motions for the player, by default the paper's two cases
+    scenes : motions for the player, by default the paper's two cases; see `own_scene`
+    sections : what the page shows, in order; tables that none names come last
 
     Raises
     ------
@@ -51,7 +56,7 @@ def write_page(
     found = Folder(Path(folder))
     results = Results(folder)
     shown = paper_scenes() if scenes is None else scenes
-    path = results.text(PAGE, document(found, title=title, scenes=shown))
+    path = results.text(PAGE, document(found, title=title, scenes=shown, parts=sections))
     if (results.folder / MANIFEST).is_file():
         results.refresh()
     return path

@@ -33,9 +33,13 @@ ADDED = "What the measurements add"
 """Headings of the findings; every further topic is under the last."""
 
 
-def document(folder: Folder, *, title: str, scenes: Sequence[Scene]) -> str:
+def document(
+    folder: Folder, *, title: str, scenes: Sequence[Scene], parts: Sequence[Section]
+) -> str:
     """The whole page as text: the same for the same folder."""
-    shown = [_filled(section, folder, bool(scenes)) for section in _sections(folder)]
+    sampled = [player_data(scene) for scene in scenes]
+    motions = [motion for motion in sampled if motion["curves"]]
+    shown = [_filled(section, folder, bool(motions)) for section in _sections(folder, parts)]
     context = {
         "title": title,
         "version": __version__,
@@ -43,7 +47,7 @@ def document(folder: Folder, *, title: str, scenes: Sequence[Scene]) -> str:
         "sections": [section for section in shown if section],
         "manifest": folder.manifest,
         "failures": folder.failures,
-        "data": list(_data(folder, scenes)),
+        "data": list(_data(folder, motions)),
         "style": Markup((ASSETS / "page.css").read_text(encoding="utf-8")),
         "plotly": Markup(_plotly()),
         "scripts": [
@@ -72,18 +76,18 @@ def _plotly() -> str:
 # -- sections -----------------------------------------------------------------------------------
 
 
-def _sections(folder: Folder) -> tuple[Section, ...]:
+def _sections(folder: Folder, parts: Sequence[Section]) -> tuple[Section, ...]:
     """All sections, the last with the tables that no other names."""
-    named = {name for section in sections.SECTIONS for name in section.tables}
+    named = {name for section in parts for name in section.tables}
     rest = tuple(name for name in folder.tables if name not in named)
     other = Section(sections.OTHER.key, sections.OTHER.title, tables=rest)
-    return (*sections.SECTIONS, other)
+    return (*parts, other)
 
 
-def _filled(section: Section, folder: Folder, scenes: bool) -> dict[str, Any] | None:
+def _filled(section: Section, folder: Folder, motions: bool) -> dict[str, Any] | None:
     """A section with its tables, figures and plots; None if there are none."""
     tables = [_table(name, section, folder) for name in section.tables if name in folder.tables]
-    if not tables and not (section.needs_scenes and scenes):
+    if not tables and not (section.needs_scenes and motions):
         return None
     rows = side_by_side(folder.frame("table1")) if section.block == "table1" else []
     return {"section": section, "tables": tables, "side_by_side": rows}
@@ -145,19 +149,18 @@ def _plain(value: Any) -> Any:
 # -- data ---------------------------------------------------------------------------------------
 
 
-def _data(folder: Folder, scenes: Sequence[Scene]) -> Iterator[tuple[str, Any]]:
+def _data(folder: Folder, motions: list[dict[str, Any]]) -> Iterator[tuple[str, Any]]:
     """What scripts read, by the id of the element that holds it."""
     for name, table in folder.tables.items():
         yield f"csv-{name}", table.text
-    shown = [player_data(scene) for scene in scenes]
-    yield "scenes", shown
-    yield "looks", {name: plots.scheme_look(name) for name in sorted(_schemes(folder, shown))}
+    yield "scenes", motions
+    yield "looks", {name: plots.scheme_look(name) for name in sorted(_schemes(folder, motions))}
     yield "columns", {name: _columns(name, table.columns) for name, table in folder.tables.items()}
     yield "rankings", {name: vars(ranking) for name, ranking in sections.RANKINGS.items()}
 
 
-def _schemes(folder: Folder, scenes: list[dict[str, Any]]) -> set[str]:
-    named = {name for scene in scenes for name in scene["curves"]}
+def _schemes(folder: Folder, motions: list[dict[str, Any]]) -> set[str]:
+    named = {name for motion in motions for name in motion["curves"]}
     for name, table in folder.tables.items():
         if "scheme" in table.columns:
             named |= set(folder.frame(name)["scheme"].astype(str))

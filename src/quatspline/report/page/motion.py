@@ -26,6 +26,9 @@ BEFORE = 1e-7
 KEY_FACETS, TEAPOT_CELLS = 8, 5
 """Detail of the bodies, coarser than in the figures: a canvas fills some 50,000 faces a second."""
 
+OWN_SCALE = 0.25
+"""The body's length as a share of the extent of positions that a user gives."""
+
 
 @dataclass(frozen=True)
 class Scene:
@@ -65,6 +68,24 @@ def paper_scenes() -> list[Scene]:
         scene = Scene(name, case.title, keyframes, body, case.positions, camera, view["scale"])
         scenes.append(scene)
     return scenes
+
+
+def own_scene(
+    name: str,
+    title: str,
+    keyframes: Keyframes,
+    positions: FloatArray | None = None,
+    schemes: Sequence[str] | None = None,
+) -> Scene:
+    """A motion of one's own: a key that turns, along positions (one a time, joined by lines) if there are any."""
+    places = np.zeros((len(keyframes.times), 3)) if positions is None else positions
+    extent = float(np.ptp(places, axis=0).max())
+
+    def along(t: FloatArray) -> FloatArray:
+        return np.stack([np.interp(t, keyframes.times, axis) for axis in places.T], axis=1)
+
+    scale = OWN_SCALE * extent if extent > 0.0 else 1.0
+    return Scene(name, title, keyframes, key_mesh(KEY_FACETS), along, scale=scale, schemes=schemes)
 
 
 def player_data(scene: Scene) -> dict[str, Any]:

@@ -25,6 +25,7 @@ class Plot:
     kind : lines a series, a point a row, or a map of z over x and y
     z : columns of a map's colour
     series : the column whose values are told apart, each of which can be picked out or hidden
+    split : columns that divide a series into several lines
     facets : columns of which one value is shown at a time
     start : the value of a facet shown at first, where it is not the first in the table
     log : whether the axes (of a map: its colour) start logarithmic
@@ -36,6 +37,7 @@ class Plot:
     kind: Kind = "lines"
     z: tuple[str, ...] = ()
     series: str = "scheme"
+    split: tuple[str, ...] = ()
     facets: tuple[str, ...] = ()
     start: dict[str, str] = field(default_factory=dict)
     log: tuple[bool, bool] = (False, False)
@@ -51,7 +53,14 @@ def specification(plot: Plot, table: Table) -> dict[str, Any] | None:
     if not x or not y or plot.series not in have or (plot.kind == "map" and not z):
         return None
     axes = {"x": x, "y": y, "z": z, "facets": facets}
-    rest = {"series": plot.series, "kind": plot.kind, "log": list(plot.log), "start": plot.start}
+    split = [name for name in plot.split if name in have]
+    rest = {
+        "series": plot.series,
+        "split": split,
+        "kind": plot.kind,
+        "log": list(plot.log),
+        "start": plot.start,
+    }
     return {"id": f"plot-{plot.table}-{plot.kind}", "table": plot.table, **axes, **rest}
 
 

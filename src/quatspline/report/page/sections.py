@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from quatspline.report.page.plots import Plot
 
@@ -38,6 +38,8 @@ class Ranking:
     column: str
     descending: bool
     criterion: str
+    among: dict[str, str] = field(default_factory=dict)
+    """Values that the table is filtered for at first."""
 
 
 RANKINGS: dict[str, Ranking] = {
@@ -45,6 +47,7 @@ RANKINGS: dict[str, Ranking] = {
         "median",
         False,
         "the median over the keyframe sets of the torque energy over the least possible; less is better",
+        {"data": "committed"},
     ),
 }
 
@@ -101,14 +104,24 @@ SECTIONS: tuple[Section, ...] = (
         "How many updates the iterative schemes need, and where they stop converging.",
         ("iterations", "convergence"),
         (
-            Plot("iterations", ("step_degrees",), ("median", "q95", "most"), facets=("data",)),
+            Plot(
+                "iterations",
+                ("step_degrees",),
+                ("median", "q95", "most"),
+                split=("method",),
+                facets=("data",),
+                log=(False, True),
+            ),
             Plot(
                 "convergence",
-                ("step_degrees", "step", "angle"),
-                ("unevenness", "uneven", "knots"),
+                ("unevenness",),
+                ("step_degrees",),
                 "map",
-                ("converged", "share_converged", "failed", "iterations_median", "median"),
-                facets=("scheme", "keyframes"),
+                (
+                    *("share_converged", "iterations_median", "iterations_q95", "iterations_most"),
+                    *("rate", "rate_theory", "share_jumping", "jump_worst", "seconds_median"),
+                ),
+                facets=("scheme", "method", "keyframes"),
             ),
         ),
     ),
@@ -136,20 +149,40 @@ SECTIONS: tuple[Section, ...] = (
         (
             Plot(
                 "cost",
-                ("size", "keyframes", "samples"),
-                ("seconds_median", "seconds", "seconds_evaluate", "seconds_setup", "peak_bytes"),
+                ("size",),
+                ("seconds_median", "times_fastest", "times_memory"),
                 facets=("task",),
+                start={"task": "set-up"},
                 log=(True, True),
             ),
         ),
     ),
-    Section("continuity", "Continuity", "", ("continuity",)),
-    Section("fairness", "Fairness", "", ("fairness",)),
+    Section(
+        "continuity",
+        "Continuity",
+        "Jumps of one-sided limits at keyframes, and the k of C^k that follows.",
+        ("continuity",),
+    ),
+    Section(
+        "fairness",
+        "Fairness",
+        "How much more a curve turns and accelerates than it must.",
+        ("fairness",),
+    ),
     Section(
         "robustness",
         "Invariance, locality, noise, edge cases",
-        "",
+        "What a change of the frame, of one keyframe or of all a little does to a curve, and what hard keyframes do.",
         ("invariance", "locality", "noise", "edge-cases"),
+        (
+            Plot(
+                "locality",
+                ("offset",),
+                ("response",),
+                facets=("step_degrees",),
+                log=(False, True),
+            ),
+        ),
     ),
     Section("claims", "Claims and verdicts", "Each claim beside what was measured.", ("claims",)),
 )

@@ -19,6 +19,7 @@ quatspline.plots = (() => {
     return {
       title: { text: title, standoff: 8 }, type: log ? "log" : "linear", gridcolor: line, zeroline: false,
       linecolor: theme.color("muted"), ticks: "outside", tickcolor: line, exponentformat: "power", automargin: true,
+      ...(log ? { dtick: 1, minor: { ticks: "outside", ticklen: 3, tickcolor: line } } : {}),
     };
   }
 
@@ -68,6 +69,8 @@ quatspline.plots = (() => {
 })();
 
 quatspline.TablePlot = class {
+  static DASHES = ["solid", "dash", "dot", "dashdot"];
+
   constructor(place) {
     const { data, plots, element: make } = quatspline;
     this.spec = JSON.parse(place.dataset.plot);
@@ -78,8 +81,8 @@ quatspline.TablePlot = class {
     this.x = plots.chooser("Across", pairs(this.spec.x), redraw);
     this.y = plots.chooser("Up", pairs(this.spec.y), redraw);
     this.z = plots.chooser("Colour", pairs(this.spec.z), redraw);
-    this.facets = this.spec.facets.map(({ column, label }) => ({ column, ...plots.chooser(label, this._values(column), redraw) }));
-    this.facets.forEach(({ column, select }) => { if (column in this.spec.start) select.value = this.spec.start[column]; });
+    this.facets = this.spec.facets.map(({ column, label }) => ({ column, ...plots.chooser(label, [], () => { this._narrow(); redraw(); }) }));
+    this._narrow();
     this.picked = plots.chooser("Pick out", [["", "none"], ...this._values(this.spec.series)], redraw);
     this.logs = ["x", "y"].map((name, i) => plots.checkbox(`log ${name}`, this.spec.log[i], redraw));
     place.replaceChildren(make("div", { class: "bar" }, ...this._controls()), this.chart);
@@ -94,9 +97,21 @@ quatspline.TablePlot = class {
     return [...chosen, ...this.facets.map((facet) => facet.label), ...rest];
   }
 
-  _values(column) {
+  _values(column, rows = this.source.rows) {
     const j = this.source.columns.indexOf(column);
-    return [...new Set(this.source.rows.map((row) => row[j]))].filter((v) => v !== null).map((v) => [String(v), String(v)]);
+    return [...new Set(rows.map((row) => row[j]))].map((v) => [String(v), v === null ? "–" : String(v)]);
+  }
+
+  /* Each facet offers what there is for the choices before it, and keeps its own where it can. */
+  _narrow() {
+    let rows = this.source.rows;
+    for (const { column, select } of this.facets) {
+      const values = this._values(column, rows), j = this.source.columns.indexOf(column);
+      const wish = select.value || this.spec.start[column];
+      select.replaceChildren(...values.map(([value, text]) => quatspline.element("option", { value }, text)));
+      if (values.some(([value]) => value === wish)) select.value = wish;
+      rows = rows.filter((row) => String(row[j]) === select.value);
+    }
   }
 
   _rows() {
@@ -112,6 +127,7 @@ quatspline.TablePlot = class {
     const traces = this.spec.kind === "map" ? this._map(at(this.x), at(this.y), at(this.z)) : this._lines(at(this.x), at(this.y));
     const map = this.spec.kind === "map";
     const axes = { xaxis: plots.axis(text(this.x), !map && xlog), yaxis: plots.axis("", !map && ylog) };
+    if (map) Object.values(axes).forEach((axis) => { axis.type = "category"; axis.showgrid = false; });
     /* What goes up stands above the plot: long names would not fit along the axis. */
     const above = map ? `${text(this.z)}; up: ${text(this.y)}` : text(this.y);
     const title = { text: above, x: 0, xref: "container", xanchor: "left", y: 1, yref: "container", yanchor: "top", pad: { t: 6 }, font: { size: 14 } };
@@ -120,28 +136,38 @@ quatspline.TablePlot = class {
 
   _lines(i, j) {
     const { plots } = quatspline;
-    const s = this.source.columns.indexOf(this.spec.series);
+    const [s, ...split] = [this.spec.series, ...this.spec.split].map((name) => this.source.columns.indexOf(name));
     const groups = new Map();
     for (const row of this._rows()) {
       if (row[i] === null || row[j] === null) continue;
-      if (!groups.has(row[s])) groups.set(row[s], []);
-      groups.get(row[s]).push([row[i], row[j]]);
+      const label = [s, ...split].map((c) => row[c]).filter((v) => v !== null).join(", ");
+      if (!groups.has(label)) groups.set(label, { name: row[s], points: [] });
+      groups.get(label).points.push([row[i], row[j]]);
     }
-    const picked = this.picked.select.value;
-    return [...groups].map(([name, points]) => {
+    const picked = this.picked.select.value, dashes = quatspline.TablePlot.DASHES;
+    const nth = new Map(); /* lines of one series so far: they differ by dash */
+    return [...groups].map(([label, { name, points }]) => {
       points.sort((p, q) => p[0] - q[0]);
-      const look = plots.look(name), color = plots.seriesColor(name), chosen = picked === String(name);
+      const n = nth.get(name) || 0;
+      nth.set(name, n + 1);
+      const look = { ...plots.look(name) }, color = plots.seriesColor(name), chosen = picked === String(name);
+      if (n) look.dash = dashes[n % dashes.length];
       return {
-        name: String(name), x: points.map((p) => p[0]), y: points.map((p) => p[1]), type: "scatter",
+        name: label, x: points.map((p) => p[0]), y: points.map((p) => p[1]), type: "scatter",
         mode: this.spec.kind === "points" ? "markers" : "lines+markers", opacity: picked && !chosen ? plots.FAINT : 1,
         line: { color, dash: look.dash, width: chosen ? 3.5 : 1.6 }, marker: { color, symbol: look.symbol, size: chosen ? 10 : 7 },
       };
     });
   }
 
+  /* Numbers that span more than a thousandfold are coloured by their logarithm, and written as they are. */
   _map(i, j, k) {
-    const rows = this._rows().filter((row) => row[i] !== null && row[j] !== null);
-    const color = { colorscale: "Cividis", colorbar: { thickness: 12, outlinewidth: 0 } };
-    return [{ type: "heatmap", x: rows.map((r) => r[i]), y: rows.map((r) => r[j]), z: rows.map((r) => r[k]), hoverongaps: false, ...color }];
+    const { data } = quatspline, wide = 1e3;
+    const rows = this._rows().filter((row) => [i, j, k].every((c) => row[c] !== null));
+    const values = rows.map((row) => row[k]), least = Math.min(...values), most = Math.max(...values);
+    const log = least > 0 && most / least > wide;
+    const shared = { type: "heatmap", x: rows.map((r) => r[i]), y: rows.map((r) => r[j]), text: values.map(data.shown) };
+    const bar = { thickness: 12, outlinewidth: 0, title: { text: log ? "log10" : "" } };
+    return [{ ...shared, z: log ? values.map(Math.log10) : values, texttemplate: "%{text}", hovertemplate: "%{text}<extra></extra>", colorscale: "Cividis", colorbar: bar }];
   }
 };

@@ -114,7 +114,7 @@ quatspline.MotionPlot = class {
     });
     const face = (text) => ({ ...plots.axis(text, false), showbackground: false, gridcolor: theme.color("line") });
     const scene = { aspectmode: "data", xaxis: face("x"), yaxis: face("y"), zaxis: face("z"), camera: { projection: { type: "orthographic" } } };
-    plots.show(this.chart, traces, { scene, uirevision: motion.name });
+    plots.show(this.chart, traces, { scene, uirevision: motion.name, margin: { l: 0, r: 0, t: 0, b: 0 } });
   }
 
   _rates(motion) {

@@ -77,6 +77,10 @@ quatspline.Table = class {
     if (j < 0) return;
     this.order = { j, down: this.ranking.descending };
     this.criterion = `Ranked by ${this.ranking.column}: ${this.ranking.criterion}.`;
+    for (const { column, select } of this.lists) {
+      const wanted = this.ranking.among[column];
+      if ([...select.options].some((option) => option.value === wanted)) select.value = wanted;
+    }
   }
 
   /* Ascending at first; where more is better, descending. */
