@@ -45,6 +45,17 @@ POSE = 1e-6
 
 EVIL = '</script><script>alert(1)</script><img src=x onerror="alert(2)">&amp;'
 
+CONVERGENCE = pd.DataFrame(
+    [
+        {"scheme": name, "method": way, "keyframes": 5, "step_degrees": a, "unevenness": r}
+        | {"share_converged": 1.0 / (a + r), "rate": 0.01**a}
+        for name, way in (("kim", "newton"), ("min-torque", None))
+        for a in (1, 4)
+        for r in (1, 10)
+    ]
+)
+"""A table that is drawn as a map."""
+
 SCHEMES = ("quartic", "slerp")
 """Schemes of the player in these tests: two kernels to compile, not thirty."""
 
@@ -92,6 +103,7 @@ def results(folder: Path) -> Path:
     figure.subplots().plot([0, 1])
     for name in ("unheard-of", "figure1"):
         made.figure(name, figure)
+    made.table("convergence", CONVERGENCE)
     made.table("figure1", pd.DataFrame({"u": [0.0, 1.0]}))
     made.text("unheard-of.caption.txt", "A <b>line</b>.\n")
     entry = {"size": "quick", "seed": 0, "seconds": 1.0, "failure": None}
@@ -458,6 +470,39 @@ def test_every_plot_is_drawn_without_an_error(page: Opened) -> None:
         page.page.wait_for_function(
             "p => p.querySelector('.main-svg, canvas') || p.textContent.includes('WebGL')", arg=plot
         )
+
+
+@browsing
+def test_maps_show_what_the_table_holds(page: Opened) -> None:
+    plot = page.page.locator("#plot-convergence-map")
+    plot.scroll_into_view_if_needed()
+    plot.locator(".main-svg").first.wait_for()
+    drawn = "document.querySelector('#plot-convergence-map .chart').data[0]"
+    assert page(drawn + ".z") == pytest.approx([1 / 2, 1 / 11, 1 / 5, 1 / 14])
+    plot.get_by_label("scheme").select_option("min-torque")
+    assert plot.get_by_label("method").locator("option").all_inner_texts() == ["–"]
+    plot.get_by_label("Colour").select_option("rate")
+    assert page(drawn + ".z") == pytest.approx([-2, -2, -8, -8])  # coloured by the logarithm
+    assert page(drawn + ".text") == ["0.01", "0.01", "1.00e−8", "1.00e−8"]
+
+
+@browsing
+def test_a_series_is_picked_out_and_axes_are_switched(page: Opened) -> None:
+    plot = page.page.locator("#plot-accuracy-lines")
+    plot.scroll_into_view_if_needed()
+    plot.locator(".main-svg").first.wait_for()
+    chart = "document.querySelector('#plot-accuracy-lines .chart')"
+    assert page(chart + ".layout.yaxis.type") == "log"
+    plot.get_by_label("log y").uncheck()
+    assert page(chart + ".layout.yaxis.type") == "linear"
+    plot.get_by_label("Pick out").select_option("quintic")
+    strong = f"{chart}.data.filter((d) => d.opacity === 1).map((d) => d.name)"
+    assert page(strong) == ["quintic"]
+    points = f"{chart}.data.find((d) => d.name === 'quintic').y[0]"
+    frame = Results(REFERENCE).read_table("accuracy")
+    rows = frame[(frame["scheme"] == "quintic") & (frame["knots"] == "uniform")]
+    finest = rows.sort_values("spacing").iloc[0]
+    assert page(points) == finest["inner_angle"]
 
 
 @browsing

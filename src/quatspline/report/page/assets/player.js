@@ -168,7 +168,7 @@ quatspline.Player = class {
     const over = controls.layout.value === "over", follow = controls.follow.checked;
     const grid = this.place.querySelector(".bodies");
     if (grid.classList.toggle("over", over) !== this.over) { this.over = over; this.stages.forEach((stage) => stage.resize()); this.path.resize(); }
-    const movers = sides.map((side) => this._mover(side));
+    const movers = sides.map((side) => ({ ...this._mover(side), arrow: over ? side.color : quatspline.theme.color("text") }));
     if (over) this.stages[0].draw(motion, movers, follow);
     else this.stages.forEach((stage, i) => stage.draw(motion, [movers[i]], follow));
     this.path.draw(motion, controls.chart.value, sides, time);

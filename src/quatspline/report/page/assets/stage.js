@@ -118,7 +118,7 @@ quatspline.Stage = class extends quatspline.View {
     this.poses = [];
   }
 
-  /* Draw what moves: [{scheme, q, place, color, spin}], spin being the world's angular velocity as a share of the largest. */
+  /* Draw what moves: [{scheme, q, place, color, spin, arrow}], spin being the world's angular velocity as a share of the largest. */
   draw(motion, movers, follow) {
     const { geometry } = quatspline, axes = this.axes;
     this._aim(motion, axes, follow ? movers[0].place : null);
@@ -197,11 +197,11 @@ quatspline.Stage = class extends quatspline.View {
     return faces;
   }
 
-  _spin(motion, { place, spin }, axes) {
+  _spin(motion, { place, spin, arrow }, axes) {
     const { apply, add } = quatspline.geometry;
     if (!spin) return;
     const tip = add(place, spin, 0.95 * motion.scale);
-    this.arrow(this.at(apply(axes, place)), this.at(apply(axes, tip)), quatspline.theme.color("text"), 2.2);
+    this.arrow(this.at(apply(axes, place)), this.at(apply(axes, tip)), arrow, 2.2);
   }
 
   /* "#rrggbb" lightened a little, so that shading has room. */
