@@ -8,7 +8,7 @@ QUICK ?=
 NAME ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help reproduce benchmark test lint format new-baseline check-baseline reference lock clean
+.PHONY: help reproduce benchmark report test lint format new-baseline check-baseline reference lock clean
 
 help: ## Show the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /|/' | awk -F'|' '{printf "  make %-16s %s\n", $$1, $$2}'
@@ -32,6 +32,9 @@ reproduce: $(VENV)/run ## The paper in full and every other experiment at quick 
 
 benchmark: $(VENV)/run ## Every experiment at full size (QUICK=1: all at quick size)
 	@$(RUN) run $(if $(QUICK),--quick,--full)
+
+report: $(VENV)/run ## Write results/report.html again from the tables that are there
+	@$(RUN) report
 
 test: $(VENV)/test lint ## Lint, types and all tests
 	@$(BIN)/python -m pytest -n 2 --dist worksteal -q

@@ -272,6 +272,19 @@ def test_a_run_renews_the_page_that_is_there(small: Path) -> None:
     assert not (small / "report.html").exists()
 
 
+def test_the_command_writes_and_opens_the_page(
+    small: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    opened: list[str] = []
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    Results(small).table("small", pd.DataFrame({"x": [1]}))
+    assert main(["report", "--out", str(small), "--open"]) == 0
+    page = small / "report.html"
+    assert opened == [page.resolve().as_uri()]
+    assert capsys.readouterr().out == f"{page}\n"
+    assert "csv-small" in page.read_text(encoding="utf-8")
+
+
 def test_a_page_that_cannot_be_written_costs_no_table(
     small: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

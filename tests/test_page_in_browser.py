@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import os
 import shutil
@@ -32,12 +33,18 @@ FLAGS = [
 pytestmark = pytest.mark.browser
 
 
+def needed(module: str) -> Any:
+    """A module of the extra 'test', without which a test is skipped or, where required, fails."""
+    required = os.environ.get(REQUIRED)
+    return importlib.import_module(module) if required else pytest.importorskip(module)
+
+
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
     if CHROMIUM is None:
         report = pytest.fail if os.environ.get(REQUIRED) else pytest.skip
         report("no chromium on this machine: install the system's package")
-    playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+    playwright = needed("playwright.sync_api")
     with playwright.sync_playwright() as driver:
         opened = driver.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
         yield opened
@@ -274,7 +281,7 @@ def test_the_look_follows_the_system_and_the_switch(opened: Any) -> None:
 
 @pytest.mark.parametrize(("width", "look"), [(1280, "light"), (375, "dark")])
 def test_the_page_is_accessible_and_fits(opened: Any, look: str, width: int) -> None:
-    axe = pytest.importorskip("axe_playwright_python.sync_playwright")
+    axe = needed("axe_playwright_python.sync_playwright")
     page = opened(color_scheme=look, viewport={"width": width, "height": 800})
     for _ in range(2):  # as the system prefers, then switched
         assert page("document.documentElement.scrollWidth") <= width
