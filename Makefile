@@ -9,7 +9,7 @@ NAME ?=
 TASK ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help reproduce benchmark benchmark-speed test lint format new-baseline check-baseline reference lock clean
+.PHONY: help reproduce benchmark benchmark-speed report test lint format new-baseline check-baseline reference lock clean
 
 help: ## Show the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /|/' | awk -F'|' '{printf "  make %-16s %s\n", $$1, $$2}'
@@ -39,6 +39,9 @@ benchmark-speed: $(VENV)/test ## The speed suite (pytest-benchmark), compared wi
 	  --benchmark-storage=file://results/benchmarks --benchmark-columns=median,iqr,rounds \
 	  --benchmark-max-time=0.3 --benchmark-min-rounds=3 \
 	  -W ignore::pytest_benchmark.logger.PytestBenchmarkWarning $(if $(TASK),-k '$(TASK)')
+
+report: $(VENV)/run ## Write results/report.html again from the tables that are there
+	@$(RUN) report
 
 test: $(VENV)/test lint ## Lint, types and all tests
 	@$(BIN)/python -m pytest -n 2 --dist worksteal -q

@@ -6,6 +6,7 @@ says so in its `departs`, and then has to fail it.
 """
 
 import os
+from pathlib import Path
 
 import pytest
 
@@ -55,3 +56,14 @@ def _names(config: pytest.Config) -> list[str]:
 def _departure(scheme: type[Curve], check: str) -> list[pytest.MarkDecorator]:
     reason = scheme.departs.get(check)
     return [pytest.mark.xfail(strict=True, reason=f"{scheme.name}: {reason}")] if reason else []
+
+
+@pytest.fixture(scope="session")
+def page_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A results folder with its page."""
+    import pages
+    from quatspline.report.page import write_page
+
+    made = pages.results(tmp_path_factory.mktemp("page") / "results")
+    write_page(made, scenes=pages.scenes())
+    return made

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from quatspline import registry, sweeps
 from quatspline.experiment import Experiment, Run, experiments, fingerprint, found, reason
-from quatspline.report.results import Journal, Results, now
+from quatspline.report.results import PAGE, Journal, Results, now
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -38,7 +38,8 @@ def run(
     One that fails is told on stderr and the rest still run.  What an interrupted run of the same
     options and sources had finished is kept.  ``size`` is by default full for the paper's, quick
     for the others.  Cells are measured by ``jobs`` processes, by default one a core, or by the Dask
-    scheduler at an address.  Raises ValueError for unknown or unusable names, and without a
+    scheduler at an address.  A run of all experiments ends with the page, and so does any into a
+    folder that has one.  Raises ValueError for unknown or unusable names, and without a
     scheduler.
     """
     chosen = experiments(names)
@@ -55,7 +56,23 @@ def run(
             _run_or_keep(experiment, runs[experiment.name], results, journal)
     results.finish()
     journal.close()
-    return [e.name for e in chosen if results.manifest["experiments"][e.name]["failure"]]
+    failed = [e.name for e in chosen if results.manifest["experiments"][e.name]["failure"]]
+    # A page that is there already must not show what the tables no longer say.
+    if not names or (results.folder / PAGE).is_file():
+        failed += _write_page(results)
+    return failed
+
+
+def _write_page(results: Results) -> list[str]:
+    """Write the page of all tables in the folder; its name if that fails, for they are worth more."""
+    from quatspline.report.page import write_page
+
+    try:
+        _say(f"{write_page(results.folder)}: written")
+    except Exception as error:
+        _say(f"{PAGE}: failed: {reason(error)}")
+        return [PAGE]
+    return []
 
 
 # -- one experiment -----------------------------------------------------------------------------

@@ -1,73 +1,48 @@
-"""Findings: sentences made of table cells, each of which is named beside its sentence."""
+"""Findings: sentences made of table cells; every number in one is tied to the cells that it follows from."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
-Reader = Callable[[str], pd.DataFrame]
-
-
-@dataclass(frozen=True)
-class Cell:
-    """A number with the place that it stands in."""
-
-    table: str
-    row: dict[str, Any]
-    column: str
-    value: Any
-
-    def __format__(self, spec: str) -> str:
-        return format(self.value, spec)
-
-    def __str__(self) -> str:
-        where = ", ".join(f"{key}={value}" for key, value in self.row.items())
-        return f"{self.table}.csv[{where}].{self.column}"
+from quatspline.report.quotes import Cell, Ledger, Part, Quote, Reader, Span, said
 
 
 @dataclass(frozen=True)
 class Finding:
-    """A sentence and the cells that its numbers come from."""
+    """A sentence: text without a number of its own, and quotes."""
 
     topic: str
-    text: str
-    cells: tuple[Cell, ...] = field(default=())
+    parts: tuple[Part, ...]
 
+    @property
+    def text(self) -> str:
+        """The sentence as plain text."""
+        return "".join(map(str, self.parts))
 
-class Ledger:
-    """Looks cells up and remembers which were used."""
+    @property
+    def quotes(self) -> tuple[Quote, ...]:
+        """Its numbers."""
+        return tuple(part for part in self.parts if isinstance(part, Quote))
 
-    def __init__(self, read: Reader) -> None:
-        self._read = read
-        self.used: list[Cell] = []
-
-    def __call__(self, table: str, column: str, **row: Any) -> Cell:
-        """The one cell of a table in the row that matches."""
-        frame = self._read(table)
-        picked = frame
-        for key, value in row.items():
-            picked = picked[picked[key] == value]
-        if len(picked) != 1:
-            raise LookupError(f"{table}: {len(picked)} rows match {row}, one is needed")
-        cell = Cell(table, row, column, picked.iloc[0][column])
-        self.used.append(cell)
-        return cell
+    @property
+    def cells(self) -> tuple[Cell, ...]:
+        """The cells that its numbers come from."""
+        return tuple(cell for quote in self.quotes for cell in quote.cells)
 
 
 def findings(read: Reader) -> list[Finding]:
     """All findings that the tables at hand support, in the order of the page."""
     found = []
     for topic, sentence in FINDINGS:
-        ledger = Ledger(read)
         try:
-            text = sentence(ledger)
-        except FileNotFoundError:  # an experiment that was not run
+            found.append(Finding(topic, sentence(Ledger(read))))
+        except (FileNotFoundError, LookupError):  # an experiment not run, or run for fewer cases
             continue
-        found.append(Finding(topic, text, tuple(ledger.used)))
     return found
 
 
@@ -88,113 +63,109 @@ def reader(folder: Path) -> Reader:
 ROWS = (("key", 101), ("key", 201), ("teapot", 150), ("teapot", 300))
 
 
-def _iterations(cell: Ledger) -> str:
-    key = cell(
-        "table1", "iterations", case="key", frames=101, scheme="nielson", protocol="per-frame"
-    )
-    pot = cell(
-        "table1", "iterations", case="teapot", frames=150, scheme="nielson", protocol="per-frame"
-    )
-    return (
-        f"Nielson's iteration takes {key:d} steps for the key and {pot:d} for the teapot, as in the paper; the "
-        "keyframes are reconstructed so that it does, for the paper prints none."
-    )
-
-
-def _ratios(cell: Ledger, scheme: str, protocol: str) -> list[Cell]:
-    return [
-        cell(
-            "table1", "ratio_to_quartic", case=case, frames=frames, scheme=scheme, protocol=protocol
-        )
-        for case, frames in ROWS
-    ]
-
-
-def _protocol(cell: Ledger) -> str:
-    paper = [
-        cell(
-            "table1",
-            "paper_ratio",
-            case=case,
-            frames=frames,
-            scheme="nielson",
-            protocol="per-frame",
-        )
-        for case, frames in ROWS
-    ]
-    slow, fast = (_ratios(cell, "nielson", p) for p in ("per-frame", "solve-once"))
-    return (
-        f"The paper finds its quartic {_range(paper)} times faster than the B-spline. Solving anew for every "
-        f"frame, as it does, we measure {_range(slow)} (key at 101 and 201 frames, teapot at 150 and 300); solving "
-        f"once and then evaluating, {_range(fast)}. The difference is protocol, the rest is the scheme."
+def _iterations(cell: Ledger) -> tuple[Part, ...]:
+    key: dict[str, Any] = {"case": "key", "frames": 101, "scheme": "nielson"}
+    pot: dict[str, Any] = {"case": "teapot", "frames": 150, "scheme": "nielson"}
+    key["protocol"] = pot["protocol"] = "per-frame"
+    return said(
+        "Nielson's iteration takes {key:d} steps for the key and {pot:d} for the teapot; the paper prints "
+        "{paper_key:.0f} and {paper_pot:.0f}. The keyframes are reconstructed so that it does, for the paper prints "
+        "none.",
+        key=cell("table1", "iterations", **key),
+        pot=cell("table1", "iterations", **pot),
+        paper_key=cell("table1", "paper_iterations", **key),
+        paper_pot=cell("table1", "paper_iterations", **pot),
     )
 
 
-def _newton(cell: Ledger) -> str:
-    slow, fast = (_ratios(cell, "kim", p) for p in ("per-frame", "solve-once"))
-    steps = cell(
-        "table1", "iterations", case="teapot", frames=150, scheme="kim", protocol="per-frame"
-    )
-    return (
-        f"The cumulative B-spline of Kim, Kim & Shin, solved by Newton's method ({steps:d} steps for the teapot), "
-        f"costs {_range(slow)} times the quartic per frame and {_range(fast)} times solved once."
-    )
+def _ratios(cell: Ledger, scheme: str, protocol: str, column: str = "ratio_to_quartic") -> Span:
+    where = {"scheme": scheme, "protocol": protocol}
+    found = (cell("table1", column, case=case, frames=frames, **where) for case, frames in ROWS)
+    cells = tuple(found)
+    return Quote(cells, "least"), Quote(cells, "most")
 
 
-def _jump(cell: Ledger) -> str:
-    where = {"case": "60 degrees, uniform", "quantity": "alpha"}
-    nielson = cell("continuity", "relative", scheme="nielson", **where)
-    uneven = {"case": "60 degrees, uneven", "quantity": "alpha"}
-    rough = cell("continuity", "relative", scheme="nielson", **uneven)
-    quartic = cell("continuity", "relative", scheme="quartic", **uneven)
-    kim = cell("continuity", "relative", scheme="kim", **uneven)
-    return (
-        "The paper's baseline does not have what its title is about: Nielson's curve is C1, its acceleration "
-        f"jumps at keyframes by {100 * nielson.value:.1f} % of its size on random keyframes 60 degrees apart "
-        f"({100 * rough.value:.1f} % on uneven times), while the jumps of the quartic ({quartic:.0e}) and of the "
-        f"cumulative B-spline ({kim:.0e}) are rounding."
+def _protocol(cell: Ledger) -> tuple[Part, ...]:
+    where = {"scheme": "nielson", "protocol": "per-frame"}
+    counts = [cell("table1", "frames", case=case, frames=frames, **where) for case, frames in ROWS]
+    return said(
+        "The paper finds its quartic {paper:.3g} times faster than the B-spline. Solving anew for every frame, as it "
+        "does, we measure {slow:.3g} (key at {v0} and {v1} frames, teapot at {v2} and {v3}); solving once and then "
+        "evaluating, {fast:.3g}. The difference is protocol, the rest is the scheme.",
+        paper=_ratios(cell, "nielson", "per-frame", "paper_ratio"),
+        slow=_ratios(cell, "nielson", "per-frame"),
+        fast=_ratios(cell, "nielson", "solve-once"),
+        **_numbered(counts),
     )
 
 
-def _cubic_fall(cell: Ledger) -> str:
-    sizes = [
-        cell(
-            "continuity",
-            "jump",
-            scheme="nielson",
-            quantity="alpha",
-            case=f"smooth motion, {n} keyframes",
-        )
-        for n in (41, 81)
-    ]
-    fall = sizes[0].value / sizes[1].value
-    return f"On smooth motion that jump falls by a factor {fall:.1f} when the keyframe spacing is halved (third order)."
+def _newton(cell: Ledger) -> tuple[Part, ...]:
+    where = {"case": "teapot", "frames": 150, "scheme": "kim", "protocol": "per-frame"}
+    return said(
+        "The cumulative B-spline of Kim, Kim & Shin, solved by Newton's method ({steps:d} steps for the teapot), "
+        "costs {slow:.3g} times the quartic per frame and {fast:.3g} times solved once.",
+        steps=cell("table1", "iterations", **where),
+        slow=_ratios(cell, "kim", "per-frame"),
+        fast=_ratios(cell, "kim", "solve-once"),
+    )
 
 
-def _orders(cell: Ledger) -> str:
+def _jump(cell: Ledger) -> tuple[Part, ...]:
+    def jump(scheme: str, case: str, column: str = "relative") -> Cell:
+        return cell("continuity", column, scheme=scheme, case=case, quantity="alpha")
+
+    even, uneven = "60 degrees, uniform", "60 degrees, uneven"
+    return said(
+        "The paper's baseline does not have what its title is about: Nielson's curve is C1, its acceleration jumps at "
+        "keyframes by {smooth:.1f} % of its size on random keyframes ({even}) and by {rough:.1f} % on uneven times "
+        "({uneven}), while the jumps of the quartic ({quartic:.0e}) and of the cumulative B-spline ({kim:.0e}) are "
+        "rounding.",
+        smooth=Quote((jump("nielson", even),), "percent"),
+        rough=Quote((jump("nielson", uneven),), "percent"),
+        even=jump("nielson", even, "case"),
+        uneven=jump("nielson", uneven, "case"),
+        quartic=jump("quartic", uneven),
+        kim=jump("kim", uneven),
+    )
+
+
+def _cubic_fall(cell: Ledger) -> tuple[Part, ...]:
+    where = {"scheme": "nielson", "quantity": "alpha"}
+    cases = [f"smooth motion, {n} keyframes" for n in (41, 81)]
+    jumps = tuple(cell("continuity", "jump", case=case, **where) for case in cases)
+    return said(
+        "On smooth motion that jump falls by a factor {fall:.1f} when the keyframe spacing is halved (third order).",
+        fall=Quote(jumps, "ratio"),
+    )
+
+
+def _orders(cell: Ledger) -> tuple[Part, ...]:
     names = ("slerp", "quartic", "quintic", "kim", "nielson", "local-quintic")
-    where = {"knots": "uniform", "keyframes": 641}
+    coarse, fine = cell.values("accuracy", "keyframes", scheme="quartic", knots="uniform")[-2:]
+    where = {"knots": "uniform", "keyframes": fine}
     slopes = [cell("accuracy", "slope", scheme=name, **where) for name in names]
-    listed = ", ".join(f"{name} {slope:.2f}" for name, slope in zip(names, slopes, strict=True))
-    return (
-        f"Interior orders on a smooth motion, read between 321 and 641 uniform keyframes: {listed}. The paper's "
-        "quartic converges no faster than slerp; with the second derivative of the parabola through three "
-        "keyframes (quintic) the same construction gains an order."
+    return said(
+        "Interior orders on a smooth motion, read between {before} and {after} uniform keyframes: "
+        f"{_listed(names, '.2f')}. The paper's quartic converges no faster than slerp; with the second derivative of "
+        "the parabola through three keyframes (quintic) the same construction gains an order.",
+        before=cell("accuracy", "keyframes", scheme="quartic", knots="uniform", keyframes=coarse),
+        after=cell("accuracy", "keyframes", scheme="quartic", **where),
+        **_numbered(slopes),
     )
 
 
-def _torque(cell: Ledger) -> str:
+def _torque(cell: Ledger) -> tuple[Part, ...]:
     names = ("nielson", "kim", "local-quintic", "scipy-rotation-spline", "squad", "quartic")
     medians = [cell("fairness", "median", scheme=name) for name in names]
-    sets = cell("fairness", "sets", scheme="local-quintic")
-    listed = ", ".join(f"{name} {m:.4f}" for name, m in zip(names, medians, strict=True))
-    return (
-        f"Torque energy over the least possible, median of {sets:d} committed keyframe sets: {listed}. local-quintic "
-        "is local and solves nothing."
+    return said(
+        "Torque energy over the least possible, median of {sets:d} committed keyframe sets: "
+        f"{_listed(names, '.4f')}. local-quintic is local and solves nothing.",
+        sets=cell("fairness", "sets", scheme="local-quintic"),
+        **_numbered(medians),
     )
 
 
-FINDINGS: tuple[tuple[str, Callable[[Ledger], str]], ...] = (
+FINDINGS: tuple[tuple[str, Callable[[Ledger], tuple[Part, ...]]], ...] = (
     ("reproduction", _iterations),
     ("protocol", _protocol),
     ("protocol", _newton),
@@ -205,9 +176,13 @@ FINDINGS: tuple[tuple[str, Callable[[Ledger], str]], ...] = (
 )
 
 
-def _range(cells: list[Cell]) -> str:
-    low, high = min(c.value for c in cells), max(c.value for c in cells)
-    return f"{low:.3g} to {high:.3g}"
+def _listed(names: Sequence[str], spec: str) -> str:
+    """A template that names quantities v0, v1, ... after their schemes."""
+    return ", ".join(f"{name} {{v{i}:{spec}}}" for i, name in enumerate(names))
+
+
+def _numbered(cells: Sequence[Cell]) -> dict[str, Cell]:
+    return {f"v{i}": cell for i, cell in enumerate(cells)}
 
 
 def lines(folder: Path) -> Iterator[str]:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MANIFEST = "manifest.json"
+PAGE = "report.html"
 JOURNAL = ".journal.json"
 OUTPUTS = (".csv", ".md", ".png", ".svg", ".caption.txt", ".error.txt")
 """What an experiment may leave in the folder, after its name."""

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 
-from quatspline.report.findings import Cell, Ledger, Reader
+from quatspline.report.quotes import Ledger, Reader
 
 ROTATION_SPLINE = "scipy-rotation-spline"
 
@@ -23,11 +24,10 @@ class Target:
 
 @dataclass(frozen=True)
 class Verdict:
-    """A target with what was measured and the cells that it comes from."""
+    """A target with what was measured."""
 
     target: Target
     value: float
-    cells: tuple[Cell, ...]
 
     @property
     def met(self) -> bool:
@@ -129,12 +129,8 @@ def verdicts(read: Reader) -> list[Verdict]:
     """All targets with what a folder of tables says; none where speed was not measured in full."""
     found = []
     for target in TARGETS:
-        ledger = Ledger(read)
-        try:
-            value = target.value(ledger)
-        except (FileNotFoundError, LookupError):
-            continue
-        found.append(Verdict(target, value, tuple(ledger.used)))
+        with suppress(FileNotFoundError, LookupError):
+            found.append(Verdict(target, target.value(Ledger(read))))
     return found
 
 

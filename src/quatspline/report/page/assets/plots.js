@@ -1,0 +1,173 @@
+/* Interactive plots by Plotly, drawn from the tables: columns chosen, axes switched, a series picked out or hidden. */
+"use strict";
+quatspline.plots = (() => {
+  const { element: make, data, theme } = quatspline;
+  const looks = data.read("looks") || {};
+  const drawn = [];
+
+  const OPTIONS = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d", "sendDataToCloud"] };
+  const FAINT = 0.12;
+
+  function look(name) {
+    return looks[name] || { light: "#444444", dark: "#bbbbbb", symbol: "circle", dash: "solid" };
+  }
+
+  function seriesColor(name) { return look(name)[theme.look() === "dark" ? "dark" : "light"]; }
+
+  function axis(title, log) {
+    const line = theme.color("line");
+    return {
+      title: { text: title, standoff: 8 }, type: log ? "log" : "linear", gridcolor: line, zeroline: false,
+      linecolor: theme.color("muted"), ticks: "outside", tickcolor: line, exponentformat: "power", automargin: true,
+      ...(log ? { dtick: 1, minor: { ticks: "outside", ticklen: 3, tickcolor: line } } : {}),
+    };
+  }
+
+  function layout(more) {
+    const narrow = window.innerWidth < 640;
+    const legend = narrow ? { orientation: "h", y: -0.28, yanchor: "top" } : { x: 1.02, y: 1 };
+    return {
+      paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", hovermode: "closest",
+      font: { family: "system-ui, sans-serif", size: narrow ? 12 : 14, color: theme.color("text") },
+      margin: { l: 60, r: 20, t: 16, b: 50 },
+      hoverlabel: { bgcolor: theme.color("raised"), bordercolor: theme.color("line"), font: { color: theme.color("text") } },
+      legend: { ...legend, font: { size: 12 }, itemclick: "toggle", itemdoubleclick: "toggleothers" },
+      ...more,
+    };
+  }
+
+  function show(place, traces, more) {
+    return Plotly.react(place, traces, layout(more), OPTIONS);
+  }
+
+  function chooser(label, options, change) {
+    const list = options.map(([value, text]) => make("option", { value }, text));
+    const select = make("select", { onchange: change }, ...list);
+    return { select, label: make("label", {}, label, select) };
+  }
+
+  function checkbox(label, checked, change) {
+    const box = make("input", { type: "checkbox", onchange: change, checked });
+    return { box, label: make("label", { class: "check" }, box, label) };
+  }
+
+  /* One that draws itself when it comes near, and again when the look changes. */
+  function lazily(place, draw) {
+    let near = false;
+    const watch = new IntersectionObserver((entries) => {
+      if (near || !entries.some((entry) => entry.isIntersecting)) return;
+      near = true;
+      watch.disconnect();
+      draw();
+    }, { rootMargin: "400px" });
+    watch.observe(place);
+    theme.follow(() => near && draw());
+    drawn.push(place);
+  }
+
+  return { axis, show, chooser, checkbox, lazily, seriesColor, look, FAINT, all: drawn };
+})();
+
+quatspline.TablePlot = class {
+  static DASHES = ["solid", "dash", "dot", "dashdot"];
+
+  constructor(place) {
+    const { data, plots, element: make } = quatspline;
+    this.spec = JSON.parse(place.dataset.plot);
+    this.source = data.table(this.spec.table);
+    this.chart = make("div", { class: "chart" });
+    const redraw = () => this.draw();
+    const pairs = (list) => list.map(({ column, label }) => [column, label]);
+    this.x = plots.chooser("Across", pairs(this.spec.x), redraw);
+    this.y = plots.chooser("Up", pairs(this.spec.y), redraw);
+    this.z = plots.chooser("Colour", pairs(this.spec.z), redraw);
+    this.facets = this.spec.facets.map(({ column, label }) => ({ column, ...plots.chooser(label, [], () => { this._narrow(); redraw(); }) }));
+    this._narrow();
+    this.picked = plots.chooser("Pick out", [["", "none"], ...this._values(this.spec.series)], redraw);
+    this.logs = ["x", "y"].map((name, i) => plots.checkbox(`log ${name}`, this.spec.log[i], redraw));
+    place.replaceChildren(make("div", { class: "bar" }, ...this._controls()), this.chart);
+    plots.lazily(place, redraw);
+  }
+
+  _controls() {
+    const map = this.spec.kind === "map";
+    const several = [[this.x, this.spec.x], [this.y, this.spec.y], [this.z, this.spec.z]];
+    const chosen = several.filter(([, options]) => options.length > 1).map(([chooser]) => chooser.label);
+    const rest = map ? [] : [this.picked.label, ...this.logs.map((log) => log.label)];
+    return [...chosen, ...this.facets.map((facet) => facet.label), ...rest];
+  }
+
+  _values(column, rows = this.source.rows) {
+    const j = this.source.columns.indexOf(column);
+    return [...new Set(rows.map((row) => row[j]))].map((v) => [String(v), v === null ? "–" : String(v)]);
+  }
+
+  /* Each facet offers what there is for the choices before it, and keeps its own where it can. */
+  _narrow() {
+    let rows = this.source.rows;
+    for (const { column, select } of this.facets) {
+      const values = this._values(column, rows), j = this.source.columns.indexOf(column);
+      const wish = select.value || this.spec.start[column];
+      select.replaceChildren(...values.map(([value, text]) => quatspline.element("option", { value }, text)));
+      if (values.some(([value]) => value === wish)) select.value = wish;
+      rows = rows.filter((row) => String(row[j]) === select.value);
+    }
+  }
+
+  _rows() {
+    const kept = this.facets.map(({ column, select }) => [this.source.columns.indexOf(column), select.value]);
+    return this.source.rows.filter((row) => kept.every(([j, v]) => String(row[j]) === v));
+  }
+
+  draw() {
+    const at = (chooser) => this.source.columns.indexOf(chooser.select.value);
+    const text = (chooser) => chooser.select.selectedOptions[0]?.textContent || "";
+    const { plots } = quatspline;
+    const [xlog, ylog] = this.logs.map((log) => log.box.checked);
+    const traces = this.spec.kind === "map" ? this._map(at(this.x), at(this.y), at(this.z)) : this._lines(at(this.x), at(this.y));
+    const map = this.spec.kind === "map";
+    const axes = { xaxis: plots.axis(text(this.x), !map && xlog), yaxis: plots.axis("", !map && ylog) };
+    if (map) Object.values(axes).forEach((axis) => { axis.type = "category"; axis.showgrid = false; });
+    /* What goes up stands above the plot: long names would not fit along the axis. */
+    const above = map ? `${text(this.z)}; up: ${text(this.y)}` : text(this.y);
+    const title = { text: above, x: 0, xref: "container", xanchor: "left", y: 1, yref: "container", yanchor: "top", pad: { t: 6 }, font: { size: 14 } };
+    plots.show(this.chart, traces, { ...axes, title, showlegend: !map, margin: { l: 60, r: 20, t: 40, b: 50 } });
+  }
+
+  _lines(i, j) {
+    const { plots } = quatspline;
+    const [s, ...split] = [this.spec.series, ...this.spec.split].map((name) => this.source.columns.indexOf(name));
+    const groups = new Map();
+    for (const row of this._rows()) {
+      if (row[i] === null || row[j] === null) continue;
+      const label = [s, ...split].map((c) => row[c]).filter((v) => v !== null).join(", ");
+      if (!groups.has(label)) groups.set(label, { name: row[s], points: [] });
+      groups.get(label).points.push([row[i], row[j]]);
+    }
+    const picked = this.picked.select.value, dashes = quatspline.TablePlot.DASHES;
+    const nth = new Map(); /* lines of one series so far: they differ by dash */
+    return [...groups].map(([label, { name, points }]) => {
+      points.sort((p, q) => p[0] - q[0]);
+      const n = nth.get(name) || 0;
+      nth.set(name, n + 1);
+      const look = { ...plots.look(name) }, color = plots.seriesColor(name), chosen = picked === String(name);
+      if (n) look.dash = dashes[n % dashes.length];
+      return {
+        name: label, x: points.map((p) => p[0]), y: points.map((p) => p[1]), type: "scatter",
+        mode: this.spec.kind === "points" ? "markers" : "lines+markers", opacity: picked && !chosen ? plots.FAINT : 1,
+        line: { color, dash: look.dash, width: chosen ? 3.5 : 1.6 }, marker: { color, symbol: look.symbol, size: chosen ? 10 : 7 },
+      };
+    });
+  }
+
+  /* Numbers that span more than a thousandfold are coloured by their logarithm, and written as they are. */
+  _map(i, j, k) {
+    const { data } = quatspline, wide = 1e3;
+    const rows = this._rows().filter((row) => [i, j, k].every((c) => row[c] !== null));
+    const values = rows.map((row) => row[k]), least = Math.min(...values), most = Math.max(...values);
+    const log = least > 0 && most / least > wide;
+    const shared = { type: "heatmap", x: rows.map((r) => r[i]), y: rows.map((r) => r[j]), text: values.map(data.shown) };
+    const bar = { thickness: 12, outlinewidth: 0, title: { text: log ? "log10" : "" } };
+    return [{ ...shared, z: log ? values.map(Math.log10) : values, texttemplate: "%{text}", hovertemplate: "%{text}<extra></extra>", colorscale: "Cividis", colorbar: bar }];
+  }
+};

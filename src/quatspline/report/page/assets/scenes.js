@@ -1,0 +1,132 @@
+/* Motions as the player reads them: sampled curves of several schemes on common times. */
+"use strict";
+quatspline.Motion = class {
+  constructor(packed) {
+    const { floats, integers } = quatspline.data;
+    Object.assign(this, { name: packed.name, title: packed.title, start: packed.start, closed: packed.closed });
+    Object.assign(this, { knots: packed.knots, keyframes: packed.keyframes, view: packed.view, scale: packed.scale });
+    Object.assign(this, { pair: packed.pair, refused: packed.refused });
+    this.span = this.knots[this.knots.length - 1];
+    this.t = floats(packed.t);
+    this.places = this._rows(floats(packed.positions), 3);
+    const { vertices, normals, tint, lift, cells } = packed.body;
+    this.body = {
+      vertices: this._rows(floats(vertices), 3), normals: this._rows(floats(normals), 3),
+      tint: floats(tint), lift: floats(lift), cells: this._rows(integers(cells), 4),
+    };
+    this.packed = packed.curves;
+    this.known = new Map();
+  }
+
+  get schemes() { return Object.keys(this.packed); }
+
+  _rows(flat, width) {
+    return Array.from({ length: flat.length / width }, (_, i) => Array.from(flat.subarray(i * width, (i + 1) * width)));
+  }
+
+  /* A scheme's samples, decoded when first asked for. */
+  curve(name) {
+    if (!this.known.has(name)) {
+      const { floats } = quatspline.data, { norm } = quatspline.geometry;
+      const packed = this.packed[name];
+      const [omega, alpha, log] = ["omega", "alpha", "log"].map((key) => this._rows(floats(packed[key]), 3));
+      const norms = { omega: omega.map(norm), alpha: alpha.map(norm) };
+      this.known.set(name, { name, title: packed.title, q: this._rows(floats(packed.q), 4), omega, alpha, log, norms });
+    }
+    return this.known.get(name);
+  }
+
+  /* The last sample not after t, and the share of the way to the next. */
+  locate(t) {
+    let low = 0, high = this.t.length - 1;
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (this.t[middle] <= Math.fround(t)) low = middle; else high = middle - 1;
+    }
+    const next = Math.min(low + 1, this.t.length - 1), gap = this.t[next] - this.t[low];
+    return { i: low, next, u: gap > 0 ? Math.min(Math.max((t - this.t[low]) / gap, 0), 1) : 0 };
+  }
+
+  orientation(name, t) {
+    const { i, next, u } = this.locate(t), { q } = this.curve(name);
+    return u === 0 ? q[i] : quatspline.geometry.slerp(q[i], q[next], u);
+  }
+
+  /* Samples (rows of `list`, or numbers) between the two neighbours. */
+  between(list, t) {
+    const { i, next, u } = this.locate(t);
+    const mix = (a, b) => (u === 0 ? a : a + u * (b - a));
+    return Array.isArray(list[i]) ? list[i].map((a, k) => mix(a, list[next][k])) : mix(list[i], list[next]);
+  }
+
+  /* The number of a keyframe at this time, or -1. */
+  keyframeAt(t) { return this.knots.findIndex((knot) => Math.abs(knot - t) <= 1e-9 * this.span); }
+};
+
+/* Log-curves in space and strips of the rates, of all schemes, by Plotly. */
+quatspline.MotionPlot = class {
+  constructor(place, motions) {
+    const { plots, element: make } = quatspline;
+    this.kind = place.dataset.motion;
+    this.motions = motions;
+    this.chart = make("div", { class: "chart" });
+    const redraw = () => this.draw();
+    this.motion = plots.chooser("Motion", motions.map((m, i) => [String(i), m.title]), redraw);
+    place.replaceChildren(make("div", { class: "bar" }, this.motion.label), this.chart);
+    plots.lazily(place, redraw);
+  }
+
+  draw() {
+    const motion = this.motions[Number(this.motion.select.value)];
+    if (this.kind === "log" && !quatspline.MotionPlot.canTurn()) {
+      this.chart.textContent = "This browser offers no WebGL, which this plot needs; the player above turns the same curves.";
+    } else if (this.kind === "log") this._log(motion);
+    else this._rates(motion);
+  }
+
+  static canTurn() {
+    const canvas = document.createElement("canvas");
+    return Boolean(canvas.getContext("webgl") || canvas.getContext("webgl2"));
+  }
+
+  _traces(motion, make) {
+    const { plots } = quatspline;
+    const first = motion.pair, rest = motion.schemes.filter((name) => !first.includes(name));
+    return [...first, ...rest].flatMap((name) => {
+      const look = plots.look(name);
+      const shown = { name, legendgroup: name, visible: motion.pair.includes(name) ? true : "legendonly" };
+      return make(motion.curve(name), { ...shown, line: { color: plots.seriesColor(name), dash: look.dash, width: 2 } });
+    });
+  }
+
+  _log(motion) {
+    const { theme, plots, geometry } = quatspline;
+    const traces = this._traces(motion, (curve, common) => [{
+      ...common, type: "scatter3d", mode: "lines", line: { ...common.line, width: 5 },
+      x: curve.log.map((v) => v[0]), y: curve.log.map((v) => v[1]), z: curve.log.map((v) => v[2]),
+    }]);
+    const keys = motion.closed ? motion.keyframes.slice(0, -1) : motion.keyframes;
+    const points = keys.map(geometry.log);
+    const marker = { size: 5, color: theme.color("ground"), line: { color: theme.color("text"), width: 2 } };
+    traces.push({
+      name: "keyframes", type: "scatter3d", mode: "markers+text", marker, text: points.map((_, i) => String(i)),
+      textfont: { color: theme.color("text") }, x: points.map((v) => v[0]), y: points.map((v) => v[1]), z: points.map((v) => v[2]),
+    });
+    const face = (text) => ({ ...plots.axis(text, false), showbackground: false, gridcolor: theme.color("line") });
+    const scene = { aspectmode: "data", xaxis: face("x"), yaxis: face("y"), zaxis: face("z"), camera: { projection: { type: "orthographic" } } };
+    plots.show(this.chart, traces, { scene, uirevision: motion.name, margin: { l: 0, r: 0, t: 0, b: 0 } });
+  }
+
+  _rates(motion) {
+    const { plots, theme } = quatspline;
+    const t = Array.from(motion.t, (v) => v + motion.start);
+    const traces = this._traces(motion, (curve, common) => ["omega", "alpha"].map((rate, i) => ({
+      ...common, type: "scatter", mode: "lines", x: t, y: curve.norms[rate], yaxis: i ? "y2" : "y", showlegend: i === 0,
+    })));
+    const line = { color: theme.color("shell"), width: 1, dash: "dot" };
+    const shapes = motion.knots.map((k) => ({ type: "line", xref: "x", yref: "paper", x0: k + motion.start, x1: k + motion.start, y0: 0, y1: 1, line, layer: "below" }));
+    const upper = { ...plots.axis("|ω| (rad/t)", false), domain: [0.54, 1], rangemode: "tozero" };
+    const lower = { ...plots.axis("|α| (rad/t²)", false), domain: [0, 0.46], rangemode: "tozero" };
+    plots.show(this.chart, traces, { xaxis: { ...plots.axis("t", false), showgrid: false, anchor: "y2" }, yaxis: upper, yaxis2: lower, shapes, uirevision: motion.name });
+  }
+};

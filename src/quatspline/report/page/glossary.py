@@ -1,0 +1,100 @@
+"""What columns mean, in which unit, and which way is better: axis text and sorting notes derive from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Better = Literal["less", "more", ""]
+
+
+@dataclass(frozen=True)
+class Column:
+    """What a column holds."""
+
+    meaning: str
+    unit: str = ""
+    better: Better = ""
+
+
+ANGLE, RATE, RATE2 = "rad", "rad/t", "rad/t²"
+
+GLOSSARY: dict[str, Column] = {
+    "spacing": Column("keyframe spacing", "t"),
+    "keyframes": Column("number of keyframes"),
+    "step_degrees": Column("angle between neighbouring keyframes", "degrees"),
+    "inner_angle": Column("largest angle to the truth, inner window", ANGLE, "less"),
+    "angle": Column("largest angle to the truth", ANGLE, "less"),
+    "inner_omega": Column("largest error of the angular velocity, inner window", RATE, "less"),
+    "inner_alpha": Column("largest error of the angular acceleration, inner window", RATE2, "less"),
+    "slope": Column("order of convergence from the level before", "", "more"),
+    "regression": Column("order of convergence over the last levels", "", "more"),
+    "jump": Column("largest jump at an inner keyframe", "", "less"),
+    "relative": Column("largest jump as a share of the quantity's size", "", "less"),
+    "measured_k": Column("measured k of C^k", "", "more"),
+    "claimed_k": Column("claimed k of C^k"),
+    "least_key_speed": Column("least speed at an inner keyframe over the mean speed", "", "more"),
+    "peak_speed": Column("peak speed over the mean speed", "", "less"),
+    "seconds_median": Column("median time", "s", "less"),
+    "seconds_iqr": Column("interquartile range of the times", "s", "less"),
+    "ratio_to_quartic": Column("time over the quartic's", "", "less"),
+    "iterations": Column("updates until the stop rule is met", "", "less"),
+    "deviation": Column("largest angle to what the change should give", ANGLE, "less"),
+    "invariance.relative": Column("deviation over the step angle", "", "less"),
+    "edge-cases.relative": Column("deviation over the largest step", "", "less"),
+    "offset": Column("segments from the changed keyframe"),
+    "response": Column("movement of a segment over that of the keyframe", "", "less"),
+    "amplification": Column("largest response to the change of a keyframe", "", "less"),
+    "support": Column("segments that a keyframe shapes", "", "less"),
+    "decay": Column("factor of the response a segment farther", "", "less"),
+    "gain": Column("movement of the orientation over the errors", "", "less"),
+    "gain_omega": Column("movement of the velocity times spacing over the errors", "", "less"),
+    "gain_alpha": Column(
+        "movement of the acceleration times spacing squared over the errors", "", "less"
+    ),
+    "spacing_1deg": Column("spacing from which on the error stays below 1 degree", "t", "more"),
+    "spacing_0.1deg": Column("spacing from which on it stays below 0.1 degrees", "t", "more"),
+    "spacing_0.01deg": Column("spacing from which on it stays below 0.01 degrees", "t", "more"),
+    "unevenness": Column("largest possible ratio of two knot spacings"),
+    "share_converged": Column("share of the sets that converge", "", "more"),
+    "share_jumping": Column("share of the sets whose acceleration jumps", "", "less"),
+    "jump_worst": Column("worst acceleration jump over the peak", "", "less"),
+    "jump_median": Column("median acceleration jump over the peak", "", "less"),
+    "rate": Column("factor of the change by a late iteration", "", "less"),
+    "rate_theory": Column("spectral radius of the flat equations", "", "less"),
+    "iterations_median": Column("median iterations", "", "less"),
+    "iterations_q95": Column("95 % quantile of iterations", "", "less"),
+    "iterations_most": Column("most iterations", "", "less"),
+    "size": Column("keyframes, or samples evaluated"),
+    "times_fastest": Column("time over the fastest scheme's", "", "less"),
+    "times_memory": Column("peak memory over the data's", "", "less"),
+    "exps": Column("exponentials for one keyframe or sample", "", "less"),
+    "logs": Column("logarithms for one keyframe or sample", "", "less"),
+    "slerps": Column("slerps for one keyframe or sample", "", "less"),
+    "fairness.least": Column("least torque energy over the minimum", "", "less"),
+    "fairness.median": Column("median of torque energy over the minimum", "", "less"),
+    "fairness.q95": Column("95 % quantile of torque energy over the minimum", "", "less"),
+    "fairness.worst": Column("worst torque energy over the minimum", "", "less"),
+    "fairness.jerk_median": Column("median of jerk energy over that of the minimum", "", "less"),
+    "fairness.length_median": Column("median of arc length over that of the minimum", "", "less"),
+    "fairness.peak_median": Column(
+        "median of peak acceleration over that of the minimum", "", "less"
+    ),
+    "iterations.median": Column("median iterations", "", "less"),
+    "iterations.q95": Column("95 % quantile of iterations", "", "less"),
+    "iterations.most": Column("most iterations", "", "less"),
+    "iterations.not_converged": Column("sets that did not converge", "", "less"),
+}
+"""By column, or by table and column where a table gives a name a meaning of its own."""
+
+
+def column(table: str, name: str) -> Column:
+    """What a column of a table holds; its own name where nothing is written down."""
+    plain = Column(name.replace("_", " "))
+    return GLOSSARY.get(f"{table}.{name}") or GLOSSARY.get(name) or plain
+
+
+def label(table: str, name: str) -> str:
+    """Text for an axis: meaning and unit."""
+    known = column(table, name)
+    return f"{known.meaning} ({known.unit})" if known.unit else known.meaning

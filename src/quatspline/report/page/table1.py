@@ -1,0 +1,48 @@
+"""Table 1 side by side: the paper's numbers, and ours under both protocols."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pandas as pd
+
+ROW = ["case", "frames", "scheme"]
+PROTOCOLS = ("per-frame", "solve-once")
+DIGITS = ".3g"
+UNITS = {"s": 1.0, "ms": 1e-3, "µs": 1e-6, "ns": 1e-9}
+
+
+def side_by_side(table: pd.DataFrame) -> list[dict[str, Any]]:
+    """One row a case, frame count and scheme: the paper's cells, then those of each protocol.
+
+    Cells are text, in the order of the template's headings; one that was not measured is empty.
+    """
+    groups = table.groupby(ROW, sort=False)
+    return [{"key": [str(part) for part in key], "cells": _cells(group)} for key, group in groups]
+
+
+def _cells(group: pd.DataFrame) -> list[str]:
+    """Iterations, seconds and ratios of one row: the paper's before ours."""
+    paper = group.iloc[0]
+    anew, once = (group[group["protocol"] == protocol] for protocol in PROTOCOLS)
+    steps = [_shown(paper["paper_iterations"], ".0f"), _first(group, "iterations", ".0f")]
+    measured = [None if g.empty else g.iloc[0]["seconds_median"] for g in (anew, once)]
+    seconds = [duration(value) for value in (paper["paper_seconds"], *measured)]
+    ratios = [_shown(paper["paper_ratio"]), *(_first(g, "ratio_to_quartic") for g in (anew, once))]
+    return steps + seconds + ratios
+
+
+def _first(group: pd.DataFrame, column: str, spec: str = DIGITS) -> str:
+    return "" if group.empty else _shown(group.iloc[0][column], spec)
+
+
+def _shown(value: Any, spec: str = DIGITS) -> str:
+    return "" if pd.isna(value) else format(value, spec)
+
+
+def duration(seconds: float | None) -> str:
+    """A time in the unit that leaves at least one digit before the point; nothing where there is none."""
+    if seconds is None or pd.isna(seconds):
+        return ""
+    unit = next((u for u in UNITS if seconds >= UNITS[u]), "ns")
+    return f"{seconds / UNITS[unit]:.3g} {unit}"

@@ -1,0 +1,114 @@
+"""Quotes: the numbers in a sentence, each tied to the table cells that it follows from."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from string import Formatter
+from typing import Any
+
+import pandas as pd
+
+Reader = Callable[[str], pd.DataFrame]
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A number with the place that it stands in."""
+
+    table: str
+    row: dict[str, Any]
+    column: str
+    value: Any
+
+    def __str__(self) -> str:
+        where = ", ".join(f"{key}={value}" for key, value in self.row.items())
+        return f"{self.table}.csv[{where}].{self.column}"
+
+
+EXPRESSIONS: dict[str, Callable[..., Any]] = {
+    "value": lambda value: value,
+    "percent": lambda value: 100.0 * value,
+    "ratio": lambda above, below: above / below,
+    "least": lambda *values: min(values),
+    "most": lambda *values: max(values),
+}
+"""How a number in a sentence follows from its cells."""
+
+
+@dataclass(frozen=True)
+class Quote:
+    """A number in a sentence: the cells that it follows from, how, and how it is written.
+
+    Attributes
+    ----------
+    cells : in the order that the expression takes them
+    expression : a key of `EXPRESSIONS`
+    spec : the format specification
+    """
+
+    cells: tuple[Cell, ...]
+    expression: str = "value"
+    spec: str = ""
+
+    @property
+    def value(self) -> Any:
+        """The number, unrounded."""
+        return EXPRESSIONS[self.expression](*(cell.value for cell in self.cells))
+
+    @property
+    def source(self) -> Cell:
+        """The cell to look at first: for the least and the most the one that attains it."""
+        return next((cell for cell in self.cells if cell.value == self.value), self.cells[0])
+
+    def __str__(self) -> str:
+        return format(self.value, self.spec)
+
+
+Span = tuple[Quote, Quote]
+"""The least and the most of several cells, written "a to b"."""
+
+Part = str | Quote
+
+
+def said(template: str, **quantities: Cell | Quote | Span) -> tuple[Part, ...]:
+    """The parts of a sentence; the template names quantities as `str.format` does: ``{steps:d}``."""
+    parts: list[Part] = []
+    for text, name, spec, _ in Formatter().parse(template):
+        parts.append(text)
+        if name is not None:
+            parts += _written(quantities[name], spec or "")
+    return tuple(part for part in parts if part != "")
+
+
+def _written(quantity: Cell | Quote | Span, spec: str) -> list[Part]:
+    if isinstance(quantity, Cell):
+        return [Quote((quantity,), spec=spec)]
+    if isinstance(quantity, Quote):
+        return [replace(quantity, spec=spec)]
+    low, high = quantity
+    return [replace(low, spec=spec), " to ", replace(high, spec=spec)]
+
+
+class Ledger:
+    """Looks cells up."""
+
+    def __init__(self, read: Reader) -> None:
+        self._read = read
+
+    def __call__(self, table: str, column: str, **row: Any) -> Cell:
+        """The one cell of a table in the row that matches."""
+        picked = self._matching(table, row)
+        if len(picked) != 1:
+            raise LookupError(f"{table}: {len(picked)} rows match {row}, one is needed")
+        return Cell(table, row, column, picked.iloc[0][column])
+
+    def values(self, table: str, column: str, **row: Any) -> list[Any]:
+        """What a column holds in the rows that match, sorted, each value once."""
+        return sorted(self._matching(table, row)[column].dropna().unique().tolist())
+
+    def _matching(self, table: str, row: Mapping[str, Any]) -> pd.DataFrame:
+        picked = self._read(table)
+        for key, value in row.items():
+            picked = picked[picked[key] == value]
+        return picked

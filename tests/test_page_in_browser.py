@@ -1,0 +1,293 @@
+"""The page in a headless Chromium: no error, no request, and everything that a reader can do."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pages import EVIL, SCHEMES, Opened
+from quatspline.registry import scheme
+from quatspline.report.readme import REFERENCE
+from quatspline.report.results import Results
+from quatspline.trajectories.paper import CASES
+
+POSE = 1e-6
+"""Rotation angle that a pose on the canvas may be off: samples are stored as 32-bit numbers."""
+
+REQUIRED = "QUATSPLINE_BROWSER"
+"""Set where a missing browser is a failure: in continuous integration."""
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+FLAGS = [
+    *("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"),
+    *("--disable-background-networking", "--disable-component-update", "--disable-sync"),
+]
+pytestmark = pytest.mark.browser
+
+
+def needed(module: str) -> Any:
+    """A module of the extra 'test', without which a test is skipped or, where required, fails."""
+    required = os.environ.get(REQUIRED)
+    return importlib.import_module(module) if required else pytest.importorskip(module)
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    if CHROMIUM is None:
+        report = pytest.fail if os.environ.get(REQUIRED) else pytest.skip
+        report("no chromium on this machine: install the system's package")
+    playwright = needed("playwright.sync_api")
+    with playwright.sync_playwright() as driver:
+        opened = driver.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield opened
+        opened.close()
+
+
+DESKTOP = {"width": 1280, "height": 900}
+
+
+@pytest.fixture
+def opened(browser: Any, page_folder: Path) -> Iterator[Any]:
+    """Opens the page in a context of the test's own."""
+    made: list[Opened] = []
+
+    def open_it(**context: Any) -> Opened:
+        made.append(
+            Opened(browser, page_folder / "report.html", **{"viewport": DESKTOP, **context})
+        )
+        return made[-1]
+
+    yield open_it
+    for one in made:
+        one.context.close()
+        one.check()
+
+
+@pytest.fixture(scope="module")
+def desktop(browser: Any, page_folder: Path) -> Iterator[Opened]:
+    one = Opened(browser, page_folder / "report.html", viewport=DESKTOP)
+    yield one
+    one.context.close()
+
+
+@pytest.fixture
+def page(desktop: Opened) -> Iterator[Opened]:
+    """The page opened once for many tests (it loads for a second), the player at its start."""
+    desktop("quatspline.player.choose(0)")
+    for name, value in (("layout", "split"), ("chart", "log"), ("a", "quartic"), ("b", "slerp")):
+        desktop.page.select_option(f"select[name={name}]", value)
+    yield desktop
+    desktop.check()
+
+
+def angle(p: Any, q: Any) -> float:
+    """Rotation angle between two orientations; exact for small ones, where arccos is not."""
+    p, q = np.asarray(p), np.asarray(q)
+    return 4.0 * float(np.arcsin(min(np.linalg.norm(p - q), np.linalg.norm(p + q)) / 2.0))
+
+
+def test_every_plot_is_drawn_without_an_error(page: Opened) -> None:
+    for plot in page.page.query_selector_all(".plot"):
+        plot.scroll_into_view_if_needed()
+        page.page.wait_for_function(
+            "p => p.querySelector('.main-svg, canvas') || p.textContent.includes('WebGL')", arg=plot
+        )
+
+
+def test_maps_show_what_the_table_holds(page: Opened) -> None:
+    plot = page.page.locator("#plot-convergence-map")
+    plot.scroll_into_view_if_needed()
+    plot.locator(".main-svg").first.wait_for()
+    drawn = "document.querySelector('#plot-convergence-map .chart').data[0]"
+    assert page(drawn + ".z") == pytest.approx([1 / 2, 1 / 11, 1 / 5, 1 / 14])
+    plot.get_by_label("scheme").select_option("min-torque")
+    assert plot.get_by_label("method").locator("option").all_inner_texts() == ["–"]
+    plot.get_by_label("Colour").select_option("rate")
+    assert page(drawn + ".z") == pytest.approx([-2, -2, -8, -8])  # coloured by the logarithm
+    assert page(drawn + ".text") == ["0.01", "0.01", "1.00e−8", "1.00e−8"]
+
+
+def test_a_series_is_picked_out_and_axes_are_switched(page: Opened) -> None:
+    plot = page.page.locator("#plot-accuracy-lines")
+    plot.scroll_into_view_if_needed()
+    plot.locator(".main-svg").first.wait_for()
+    chart = "document.querySelector('#plot-accuracy-lines .chart')"
+    assert page(chart + ".layout.yaxis.type") == "log"
+    plot.get_by_label("log y").uncheck()
+    assert page(chart + ".layout.yaxis.type") == "linear"
+    plot.get_by_label("Pick out").select_option("quintic")
+    strong = f"{chart}.data.filter((d) => d.opacity === 1).map((d) => d.name)"
+    assert page(strong) == ["quintic"]
+    points = f"{chart}.data.find((d) => d.name === 'quintic').y[0]"
+    frame = Results(REFERENCE).read_table("accuracy")
+    rows = frame[(frame["scheme"] == "quintic") & (frame["knots"] == "uniform")]
+    finest = rows.sort_values("spacing").iloc[0]
+    assert page(points) == finest["inner_angle"]
+
+
+@pytest.mark.parametrize("index", [0, 1])
+def test_the_player_shows_the_pose_of_each_keyframe(page: Opened, index: int) -> None:
+    case = list(CASES.values())[index]
+    page.page.select_option("select[name=scene]", str(index))
+    keyframes = case.keyframes()
+    poses = [*keyframes.quaternions, keyframes.quaternions[0]][: len(case.times)]
+    for k, time in enumerate(case.times):
+        page("t => quatspline.player.seek(t)", float(time))
+        shown = page("quatspline.player.pose()")
+        assert shown["keyframe"] == k
+        assert shown["time"] == time
+        assert [pose["scheme"] for pose in shown["poses"]] == ["quartic", "slerp"]
+        for pose in shown["poses"]:
+            assert angle(pose["q"], poses[k]) < POSE
+
+
+def test_between_keyframes_the_player_shows_the_curve(page: Opened) -> None:
+    case = next(iter(CASES.values()))
+    curves = {name: scheme(name).from_keyframes(case.keyframes()) for name in SCHEMES}
+    for time in (0.3712, 1.5, 2.9031):
+        page("t => quatspline.player.seek(t)", time)
+        for pose in page("quatspline.player.pose()")["poses"]:
+            assert angle(pose["q"], curves[pose["scheme"]](time)) < 1e-3  # slerp between samples
+
+
+def test_the_player_plays_pauses_and_obeys_the_keys(page: Opened) -> None:
+    time = "quatspline.player.pose().time"
+    page.page.focus("input[name=time]")
+    page.page.keyboard.press("Space")
+    page.page.wait_for_function(f"{time} > 0.05")
+    page.page.keyboard.press("Space")
+    stopped = page(time)
+    page.page.wait_for_timeout(120)
+    assert page(time) == stopped
+    page.page.keyboard.press("End")
+    assert page(time) == 4.0
+    page.page.keyboard.press("PageUp")
+    assert page(time) == 3.0
+    page.page.keyboard.press("ArrowLeft")
+    assert 2.9 < page(time) < 3.0
+    page.page.keyboard.press("Home")
+    assert page(time) == 0.0
+    page.page.click("button[name=next]")
+    assert page("quatspline.player.pose().keyframe") == 1
+    page.page.select_option("select[name=layout]", "over")
+    page.page.select_option("select[name=chart]", "stereographic")
+    assert len(page("quatspline.player.pose().poses")) == 2
+
+
+def test_scrubbing_moves_the_body_and_catches_keyframes(page: Opened) -> None:
+    strip = page.page.locator("canvas.strip").first
+    strip.scroll_into_view_if_needed()
+    box = strip.bounding_box()
+    middle = box["y"] + box["height"] / 2
+    page.page.mouse.click(box["x"] + 0.37 * box["width"], middle)
+    assert 1.3 < page("quatspline.player.pose().time") < 1.7
+    page.page.mouse.click(box["x"] + 8 + 0.5 * (box["width"] - 16) + 1, middle)
+    assert page("quatspline.player.pose().keyframe") == 2
+    page.page.locator("input[name=time]").fill("1.25")
+    assert page("quatspline.player.pose().time") == 1.25
+
+
+def test_the_canvas_shows_the_body_move(page: Opened) -> None:
+    picture = "document.querySelector('canvas.stage').toDataURL()"
+    first = page(picture)
+    page("quatspline.player.seek(1.5)")
+    second = page(picture)
+    page("quatspline.player.seek(0)")
+    assert first != second
+    assert page(picture) == first
+
+
+def test_less_motion_goes_from_keyframe_to_keyframe(opened: Any) -> None:
+    page = opened(reduced_motion="reduce")
+    page.page.click("button[name=play]")
+    for k in (1, 2):
+        page.page.wait_for_function(f"quatspline.player.pose().keyframe === {k}")
+
+
+def test_tables_sort_filter_and_download(page: Opened, page_folder: Path, tmp_path: Path) -> None:
+    tab = page.page
+    table = tab.locator("#table-fairness")
+    frame = Results(page_folder).read_table("fairness")
+
+    def shown() -> list[str]:
+        return table.locator("tbody tr td:first-child").all_inner_texts()
+
+    ranked = frame.sort_values("median", kind="stable")["scheme"].tolist()
+    assert shown() == ranked[:15]
+    assert "Ranked by median" in table.locator("p.order").inner_text()
+    table.get_by_role("button", name="worst").click()
+    assert shown() == frame.sort_values("worst", kind="stable")["scheme"].tolist()[:15]
+    assert "less is better" in table.locator("p.order").inner_text()
+    head = table.locator("th[data-column=worst]")
+    assert head.get_attribute("aria-sort") == "ascending"
+    table.get_by_role("button", name="worst").click()
+    assert head.get_attribute("aria-sort") == "descending"
+    table.get_by_label("Filter").fill("nielson")
+    assert shown() == ["nielson"]
+    with tab.expect_download() as waiting:
+        table.get_by_role("button", name="Download CSV").click()
+    saved = tmp_path / "fairness.csv"
+    waiting.value.save_as(saved)
+    assert waiting.value.suggested_filename == "fairness.csv"
+    assert saved.read_bytes() == (page_folder / "fairness.csv").read_bytes()
+
+
+def test_missing_values_come_last_and_text_stays_text(page: Opened) -> None:
+    tab = page.page
+    table = tab.locator("#table-unheard-of")
+    for expected in (["2", "∞", ""], ["∞", "2", ""]):
+        table.get_by_role("button", name="score").click()
+        assert table.locator("tbody tr td:nth-child(2)").all_inner_texts() == expected
+    assert EVIL in table.locator("tbody").inner_text()
+
+
+def test_figures_are_downloaded_as_they_are(
+    page: Opened, page_folder: Path, tmp_path: Path
+) -> None:
+    tab = page.page
+    with tab.expect_download() as waiting:
+        tab.locator("#result-unheard-of button.svg").click()
+    waiting.value.save_as(tmp_path / "a.svg")
+    saved = (tmp_path / "a.svg").read_text(encoding="utf-8")
+    assert saved.strip() == (page_folder / "unheard-of.svg").read_text(encoding="utf-8").strip()
+
+
+def test_a_number_leads_to_its_row(page: Opened) -> None:
+    tab = page.page
+    link = tab.locator("a.quote[data-expression=least]").first
+    value = json.loads(link.get_attribute("data-value"))
+    link.click()
+    cell = tab.locator("tr.cited td.cited")
+    assert cell.count() == 1
+    assert float(cell.get_attribute("title")) == value
+
+
+def test_the_look_follows_the_system_and_the_switch(opened: Any) -> None:
+    page = opened(color_scheme="dark")
+    assert page("quatspline.theme.look()") == "dark"
+    page.page.click("#look")
+    assert page("quatspline.theme.look()") == "light"
+    page.page.reload()
+    assert page("quatspline.theme.look()") == "light"
+
+
+@pytest.mark.parametrize(("width", "look"), [(1280, "light"), (375, "dark")])
+def test_the_page_is_accessible_and_fits(opened: Any, look: str, width: int) -> None:
+    axe = needed("axe_playwright_python.sync_playwright")
+    page = opened(color_scheme=look, viewport={"width": width, "height": 800})
+    for _ in range(2):  # as the system prefers, then switched
+        assert page("document.documentElement.scrollWidth") <= width
+        page.page.click("#look")
+    violations = (
+        axe.Axe().run(page.page, options={"resultTypes": ["violations"]}).response["violations"]
+    )
+    serious = [v for v in violations if v["impact"] in ("serious", "critical")]
+    assert serious == [], [(v["id"], v["nodes"][0]["html"][:200]) for v in serious]
