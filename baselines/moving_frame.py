@@ -146,64 +146,51 @@ def _rate(p, v):
 
 
 @inlined
-def _cubic(s, p, j, u):
-    return ((s[p + 27, j] * u + s[p + 18, j]) * u + s[p + 9, j]) * u + s[p, j]
+def _entry(s, p, j, u, quintic, m):
+    """Derivative m of an entry of B at u: a polynomial of degree 3 or 5."""
+    a, b, c = s[p + 9, j], s[p + 18, j], s[p + 27, j]
+    d, e = (s[p + 36, j], s[p + 45, j]) if quintic else (0.0, 0.0)
+    if m == 0:
+        return ((((e * u + d) * u + c) * u + b) * u + a) * u + s[p, j]
+    if m == 1:
+        return (((5.0 * e * u + 4.0 * d) * u + 3.0 * c) * u + 2.0 * b) * u + a
+    return ((20.0 * e * u + 12.0 * d) * u + 6.0 * c) * u + 2.0 * b
 
 
 @inlined
-def _cubic_slope(s, p, j, u):
-    return (3.0 * s[p + 27, j] * u + 2.0 * s[p + 18, j]) * u + s[p + 9, j]
-
-
-@inlined
-def _cubic_bend(s, p, j, u):
-    return 6.0 * s[p + 27, j] * u + 2.0 * s[p + 18, j]
-
-
-@inlined
-def _quintic(s, p, j, u):
-    k = (s[p + 45, j] * u + s[p + 36, j]) * u * u * u * u
-    return ((s[p + 27, j] * u + s[p + 18, j]) * u + s[p + 9, j]) * u + s[p, j] + k
-
-
-@inlined
-def _quintic_slope(s, p, j, u):
-    k = (5.0 * s[p + 45, j] * u + 4.0 * s[p + 36, j]) * u * u * u
-    return (3.0 * s[p + 27, j] * u + 2.0 * s[p + 18, j]) * u + s[p + 9, j] + k
-
-
-@inlined
-def _quintic_bend(s, p, j, u):
-    k = (20.0 * s[p + 45, j] * u + 12.0 * s[p + 36, j]) * u * u
-    return 6.0 * s[p + 27, j] * u + 2.0 * s[p + 18, j] + k
-
-
-POLYNOMIALS = {3: (_cubic, _cubic_slope, _cubic_bend), 5: (_quintic, _quintic_slope, _quintic_bend)}
-
-
-def _frame(entry: Any) -> Any:
-    """The columns of B, B' or B'' at a sample's u from the polynomial of an entry."""
-
-    @inlined
-    def frame(s, j):
-        u, p = s[0, j], _B
-        return (
-            (entry(s, p, j, u), entry(s, p + 1, j, u), entry(s, p + 2, j, u)),
-            (entry(s, p + 3, j, u), entry(s, p + 4, j, u), entry(s, p + 5, j, u)),
-            (entry(s, p + 6, j, u), entry(s, p + 7, j, u), entry(s, p + 8, j, u)),
-        )
-
-    return frame
+def _frame(s, j, quintic, m):
+    """The columns of derivative m of B at a sample's u."""
+    u, p = s[0, j], _B
+    return (
+        (
+            _entry(s, p, j, u, quintic, m),
+            _entry(s, p + 1, j, u, quintic, m),
+            _entry(s, p + 2, j, u, quintic, m),
+        ),
+        (
+            _entry(s, p + 3, j, u, quintic, m),
+            _entry(s, p + 4, j, u, quintic, m),
+            _entry(s, p + 5, j, u, quintic, m),
+        ),
+        (
+            _entry(s, p + 6, j, u, quintic, m),
+            _entry(s, p + 7, j, u, quintic, m),
+            _entry(s, p + 8, j, u, quintic, m),
+        ),
+    )
 
 
 def _kernel(degree: int, order: int) -> Kernel:
-    """The sample kernel of an order for splines of a degree."""
-    frame, frame1, frame2 = (_frame(entry) for entry in POLYNOMIALS[degree])
+    """The sample kernel of an order for splines of a degree.
+
+    Closures hold plain values only: numba's cache does not recognise one that holds functions.
+    """
+    quintic = degree == 5
 
     def orientation(sheet, n):
         s = carray(sheet, (ROWS, BLOCK))
         for j in range(n):
-            b = frame(s, j)
+            b = _frame(s, j, quintic, 0)
             w, x, y, z = _unit(nearest(b[0], b[1], b[2]))
             c = CONSTANTS
             w, x, y, z = mul(s[c, j], s[c + 1, j], s[c + 2, j], s[c + 3, j], w, x, y, z)
@@ -215,7 +202,7 @@ def _kernel(degree: int, order: int) -> Kernel:
     def rates(sheet, n):
         s = carray(sheet, (ROWS, BLOCK))
         for j in range(n):
-            b, b1 = frame(s, j), frame1(s, j)
+            b, b1 = _frame(s, j, quintic, 0), _frame(s, j, quintic, 1)
             w, x, y, z = _unit(nearest(b[0], b[1], b[2]))
             f = _columns(w, x, y, z)
             p = (_seen(f, b[0]), _seen(f, b[1]), _seen(f, b[2]))
@@ -223,7 +210,7 @@ def _kernel(degree: int, order: int) -> Kernel:
             v = _rate(p, _vee(q[0], q[1], q[2]))
             k = s[1, j]
             if order == 2:
-                b2 = frame2(s, j)
+                b2 = _frame(s, j, quintic, 2)
                 t0, t1, t2 = _seen(f, b2[0]), _seen(f, b2[1]), _seen(f, b2[2])
                 o0, o1, o2 = _turned(v, q[0], t0), _turned(v, q[1], t1), _turned(v, q[2], t2)
                 trace = q[0][0] + q[1][1] + q[2][2]
