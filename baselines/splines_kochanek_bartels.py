@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from quatspline.families.peers import PeerCurve, rows, unit_quaternions
+from quatspline.families.peers import PeerCurve, published_velocity, rows, unit_quaternions
 from quatspline.keyframes import Keyframes
 from quatspline.quaternion import FloatArray
 
@@ -53,3 +53,6 @@ class SplinesKochanekBartels(PeerCurve):
 
     def _orientation(self, t: FloatArray) -> FloatArray:
         return rows(self.curve.evaluate(t), self._keyframes.quaternions[0])
+
+    def _published(self, t: FloatArray, order: int) -> FloatArray | None:
+        return published_velocity(self.curve, t, self._orientation(t)) if order == 1 else None

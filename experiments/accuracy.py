@@ -1,15 +1,18 @@
 """Accuracy against keyframe spacing on a smooth motion, and the orders that it falls with."""
 
+import time
+from functools import partial
 from typing import Any
 
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from quatspline.instruments.accuracy import errors, knots, with_slopes
-from quatspline.instruments.derivatives import analytic
+from quatspline.instruments.accuracy import TARGETS, errors, knots, with_reach, with_slopes
+from quatspline.instruments.trials import Row, attempted, builder, facts
 from quatspline.quaternion import FloatArray
-from quatspline.registry import found, scheme, version
+from quatspline.registry import found
+from quatspline.registry import scheme as scheme_class
 from quatspline.report import style
 from quatspline.running import Run
 from quatspline.trajectories.smooth import SPAN, tumble
@@ -18,56 +21,71 @@ TITLE = "Accuracy on a smooth motion"
 PAPER = False
 KEYS = ["knots", "scheme", "keyframes"]
 NOTE = (
-    "Largest errors to the analytic truth; 'inner' is the window [3, 7] of [0, 10], away from the ends. slope: "
-    "order of inner_angle from the level before; regression: over the last five levels."
+    "Largest errors to the analytic truth, lower is better; 'inner' is the window [3, 7] of [0, 10], away from the "
+    "ends. slope, slope_omega, slope_alpha: orders of inner_angle, inner_omega, inner_alpha from the level before; "
+    "regression: over the last five levels. spacing_1deg, spacing_0.1deg, spacing_0.01deg: the spacing from which on "
+    "inner_angle stays below that, larger is better; unreached says why there is none."
 )
 FORMATS = {
     "spacing": ".3g",
-    "inner_angle": ".2e",
-    "angle": ".2e",
-    "inner_omega": ".2e",
-    "inner_alpha": ".2e",
-    "slope": ".2f",
-    "regression": ".2f",
+    **dict.fromkeys(("inner_angle", "angle", "inner_omega", "inner_alpha"), ".2e"),
+    **{f"{kind}{of}": ".2f" for kind in ("slope", "regression") for of in ("", "_omega", "_alpha")},
+    **dict.fromkeys(TARGETS, ".3g"),
 }
 QUICK, FULL = (21, 41, 81), (11, 21, 41, 81, 161, 321, 641)
 KINDS = ("uniform", "jittered", "log-uniform")
 
+BUDGET = 30.0
+"""Seconds of computing that a level may be expected to take ..."""
+GROWTH = 4.0
+"""... when twice the keyframes take this much longer (a set-up that grows with their square)."""
 
-def measure(run: Run) -> pd.DataFrame:
+
+def cells(run: Run) -> list[dict[str, Any]]:
+    names = run.schemes or list(found())
+    kinds = KINDS[:2] if run.quick else KINDS
+    return [{"knots": kind, "scheme": name} for name in names for kind in kinds]
+
+
+def measure_cell(run: Run, knots: str, scheme: str) -> list[Row]:
     rows = []
-    levels = QUICK if run.quick else FULL
-    cells = [(kind, count) for kind in KINDS[: 2 if run.quick else 3] for count in levels]
-    for kind, count in run.progress(cells, label="accuracy"):
-        times = knots(run.rng("accuracy", kind, count), kind, count)
-        keyframes = tumble(times)
-        for name in run.schemes or found():
-            base = {"knots": kind, "scheme": name, "keyframes": count}
-            rows.append(base | {"spacing": SPAN / (count - 1)} | _measured(name, times, keyframes))
-    return with_slopes(pd.DataFrame(rows), ["knots", "scheme"])
+    seconds = 0.0
+    for level, count in enumerate(QUICK if run.quick else FULL):
+        base = {"knots": knots, "scheme": scheme, "keyframes": count, "spacing": SPAN / (count - 1)}
+        if GROWTH * seconds > BUDGET:
+            rows.append(base | {"failure": f"over budget beyond {(count + 1) // 2} keyframes"})
+            continue
+        began = time.process_time()  # of this process alone: others may share the core
+        rows += [base | row for row in attempted(partial(_measured, run, knots, scheme, count))]
+        # The first level may load and compile.
+        seconds = time.process_time() - began if level else 0.0
+    return rows
 
 
-def _measured(name: str, times: FloatArray, keyframes: FloatArray) -> dict[str, object]:
-    try:
-        cls = scheme(name)
-        limit = cls.practical_keyframes
-        if limit is not None and len(times) > limit:
-            return {"failure": f"over budget beyond {limit} keyframes"}
-        options: dict[str, Any] = {"tolerance": 1e-11} if cls.iterative else {}
-        curve = cls(times, keyframes, **options)
-        rates = "analytic" if analytic(curve) else "numeric"
-        return {**errors(curve), "rates": rates, "version": version(name)}
-    except Exception as error:  # what does not apply or fails is a row with its reason
-        return {"failure": f"{type(error).__name__}: {error}"}
+def _measured(run: Run, kind: str, name: str, count: int) -> list[Row]:
+    limit = scheme_class(name).practical_keyframes
+    if limit is not None and count > limit:
+        return [{"failure": f"over budget beyond {limit} keyframes"}]
+    times: FloatArray = knots(run.rng("accuracy", kind, count), kind, count)
+    curve = builder(name)(times, tumble(times))
+    return [{**errors(curve), **facts(curve)}]
+
+
+def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
+    columns = ["inner_angle", "angle", "inner_omega", "inner_alpha", "rates", "version", "failure"]
+    table = table.reindex(columns=["knots", "scheme", "keyframes", "spacing", *columns])
+    by = ["knots", "scheme"]
+    return with_reach(with_slopes(table, by), by)
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    fig, panels = style.axes(style.PAGE, 5.2, 1, 2, sharey=True)
-    for ax, kind in zip(panels[0], ("uniform", "jittered"), strict=True):
+    kinds = [kind for kind in KINDS if (table["knots"] == kind).any()]
+    fig, panels = style.axes(style.PAGE, 5.4, 1, len(kinds), sharey=True)
+    for ax, kind in zip(panels[0], kinds, strict=True):
         for name, rows in table[table["knots"] == kind].groupby("scheme"):
             looks = style.scheme_style(str(name))
-            ax.plot(rows["spacing"], rows["inner_angle"], label=name, **looks)
-        _guides(ax, table["spacing"])
+            ax.plot(rows["spacing"], rows["inner_angle"], label=name, **looks, lw=0.9, ms=2.8)
+        _guides(ax, table)
         ax.set(xscale="log", yscale="log", title=f"{kind} times", xlabel="keyframe spacing (t)")
     panels[0, 0].set_ylabel("largest error on the inner window (rad)")
     style.letters(panels[0])
@@ -75,17 +93,22 @@ def draw(table: pd.DataFrame) -> Figure:
     return fig
 
 
-def _guides(ax: object, spacing: pd.Series) -> None:
-    """Slopes 2, 3 and 4 in grey."""
-    x = np.array([spacing.min(), spacing.max()])
+def _guides(ax: Any, table: pd.DataFrame) -> None:
+    """Slopes 2, 3 and 4, below the curves, and the target angles, in grey."""
+    far, near = table["spacing"].max(), table["spacing"].min()
+    x = np.array([np.sqrt(near * far), far])
+    least = table["inner_angle"].min()
     for order in (2, 3, 4):
-        ax.plot(x, 0.02 * x**order, color="#bbbbbb", lw=0.7, ls=":")  # type: ignore[attr-defined]
-        at = (x[0], 0.02 * x[0] ** order)
-        ax.annotate(f"order {order}", at, fontsize=7, color="#888888", va="top")  # type: ignore[attr-defined]
+        y = least * (x / x[0]) ** order
+        ax.plot(x, y, color="#999999", lw=0.7, ls=":")
+        ax.annotate(f"order {order}", (x[1], y[1]), fontsize=6.5, color="#777777", ha="right")
+    for degrees in TARGETS.values():
+        ax.axhline(np.radians(degrees), color="#888888", lw=0.5)
 
 
 def caption(table: pd.DataFrame) -> str:
     return (
         "Largest angle between each curve and the analytic motion that its keyframes come from, on the inner window "
-        "[3, 7] of [0, 10], against the keyframe spacing; dotted lines have slopes 2, 3, 4."
+        "[3, 7] of [0, 10], against the mean keyframe spacing; lower is better. Dotted lines have slopes 2, 3, 4; "
+        "horizontal lines are at 1, 0.1 and 0.01 degrees."
     )

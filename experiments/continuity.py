@@ -1,5 +1,6 @@
 """Measured continuity of every scheme: jumps at keyframes, the control order, the speed there."""
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -7,10 +8,11 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from quatspline.instruments.continuity import jumps, measured_continuity, speeds
-from quatspline.instruments.derivatives import analytic
+from quatspline.instruments.trials import Row, attempted, builder, facts, records
 from quatspline.quaternion import FloatArray
-from quatspline.registry import found, scheme, version
+from quatspline.registry import found
 from quatspline.report import style
+from quatspline.report.heat import ROW
 from quatspline.running import Run
 from quatspline.trajectories.smooth import SPAN, tumble
 from quatspline.trajectories.walks import walk
@@ -19,10 +21,12 @@ TITLE = "Continuity at keyframes"
 PAPER = False
 KEYS = ["case", "scheme", "order"]
 NOTE = (
-    "Jump: the largest difference of one-sided limits over inner keyframes. An order counts as continuous "
-    "when its jump is below 1e-5 of its size or falls with the step; the first that stays is the control. "
-    "Iterative schemes are solved to 1e-11. Smooth motion is for in-house schemes. measured_k is k of C^k "
-    "(3: no jump up to the third derivative)."
+    "Jump: the largest difference of one-sided limits over inner keyframes, of q also inside segments; lower is "
+    "smoother. An order counts as continuous when its jump is rounding (1e-8 of its size in closed forms; for a "
+    "library's curve, known by its orientations, 1e-7/h, 1e-6/h^2, 1e-3/h^3) or falls with the step; the first that "
+    "stays is the control. measured_k is k of C^k (-1: the curve leaps; 3: no jump up to the third derivative). "
+    "least_key_speed and peak_speed are over the mean speed: 0 is a stop at a keyframe. Iterative schemes are solved "
+    "to 1e-11."
 )
 FORMATS = {
     "jump": ".2e",
@@ -33,76 +37,100 @@ FORMATS = {
     "peak_speed": ".2f",
 }
 COUNT = 7
-TOLERANCE = 1e-11
-SMOOTH = (11, 21, 41, 81)
+SMOOTH = "smooth motion"
+COUNTS = (11, 21, 41, 81)
+SHOWN = ("60 degrees, uniform", "60 degrees, uneven", "170 degrees, uneven")
+LOOKS = {"q": ("D", "#000000"), "omega": ("o", style.BLUE), "alpha": ("s", style.RED)}
 
 
-def measure(run: Run) -> pd.DataFrame:
-    tables = []
+def cells(run: Run) -> list[dict[str, Any]]:
     names = run.schemes or list(found())
-    for case, (times, keyframes) in run.progress(_cases(run).items(), label="continuity"):
-        for name in names:
-            cls = found()[name].scheme
-            if not case.startswith("smooth") or (cls is not None and cls.peer is None):
-                tables.append(_measured(case, name, times, keyframes))
-    return pd.concat(tables, ignore_index=True)
+    return [
+        {"case": case, "scheme": name}
+        for case in _cases(run)
+        for name in names
+        if not (run.quick and case.startswith(SMOOTH) and _peer(name))
+    ]
 
 
-def _cases(run: Run) -> dict[str, tuple[FloatArray, FloatArray]]:
-    cases = {}
-    even = np.arange(float(COUNT))
-    for degrees in (60, 170) if run.quick else (60, 120, 170):
-        rng = run.rng("continuity", degrees)
-        keyframes = walk(rng, COUNT, float(degrees))[:, 0]
-        uneven = np.concatenate([[0.0], np.cumsum(np.exp(rng.uniform(-1.0, 1.0, COUNT - 1)))])
-        cases[f"{degrees} degrees, uniform"] = (even, keyframes)
-        cases[f"{degrees} degrees, uneven"] = (uneven, keyframes)
-    for count in SMOOTH:
-        t = np.linspace(0.0, SPAN, count)
-        cases[f"smooth motion, {count} keyframes"] = (t, tumble(t))
-    return cases
+def _cases(run: Run) -> list[str]:
+    angles = (60, 170) if run.quick else (60, 120, 170)
+    walks = [f"{degrees} degrees, {knots}" for degrees in angles for knots in ("uniform", "uneven")]
+    return walks + [f"{SMOOTH}, {count} keyframes" for count in COUNTS]
 
 
-def _measured(case: str, name: str, times: FloatArray, keyframes: FloatArray) -> pd.DataFrame:
-    try:
-        cls = scheme(name)
-        options: dict[str, Any] = {"tolerance": TOLERANCE} if cls.iterative else {}
-        curve = cls(times, keyframes, **options)
-        table = jumps(curve)
-        more = {
-            "measured_k": measured_continuity(table),
-            "claimed_k": curve.continuity,
-            "rates": "analytic" if analytic(curve) else "numeric",
-            "version": version(name),
-            **speeds(curve),
-        }
-    except Exception as error:  # a scheme that does not apply or fails is a row with its reason
-        table = pd.DataFrame([{"order": 0, "failure": f"{type(error).__name__}: {error}"}])
-        more = {}
-    return table.assign(case=case, scheme=name, **more)
+def _peer(name: str) -> bool:
+    cls = found()[name].scheme
+    return cls is None or cls.peer is not None
+
+
+def measure_cell(run: Run, case: str, scheme: str) -> list[Row]:
+    base = {"case": case, "scheme": scheme}
+    return [base | row for row in attempted(partial(_measured, scheme, *_keyframes(run, case)))]
+
+
+def _keyframes(run: Run, case: str) -> tuple[FloatArray, FloatArray]:
+    kind, which = case.split(", ")
+    if kind == SMOOTH:
+        t = np.linspace(0.0, SPAN, int(which.split()[0]))
+        return t, tumble(t)
+    degrees = int(kind.split()[0])
+    rng = run.rng("continuity", degrees)
+    keyframes = walk(rng, COUNT, float(degrees))[:, 0]
+    uneven = np.concatenate([[0.0], np.cumsum(np.exp(rng.uniform(-1.0, 1.0, COUNT - 1)))])
+    return (np.arange(float(COUNT)) if which == "uniform" else uneven), keyframes
+
+
+def _measured(name: str, times: FloatArray, keyframes: FloatArray) -> list[Row]:
+    curve = builder(name)(times, keyframes)
+    table = jumps(curve)
+    more = {"measured_k": measured_continuity(table), "claimed_k": curve.continuity}
+    return [row | more | facts(curve) | speeds(curve) for row in records(table)]
+
+
+def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
+    """A failure stands at order 0, so that every case and scheme has a row there."""
+    return table.assign(order=table["order"].fillna(0).astype(int)) if "order" in table else table
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    names = sorted(table["scheme"].unique(), reverse=True)
-    fig, panels = style.axes(style.PAGE, 0.19 * len(names) + 1.3, 1, 3, sharey=True)
-    shown = ("60 degrees, uniform", "60 degrees, uneven", "170 degrees, uneven")
-    looks = {"omega": ("o", style.BLUE), "alpha": ("s", style.RED)}
-    for ax, case in zip(panels[0], shown, strict=True):
-        for quantity, (marker, color) in looks.items():
-            rows = table[(table["case"] == case) & (table["quantity"] == quantity)]
-            y = [names.index(name) for name in rows["scheme"]]
-            x = rows["relative"].clip(lower=1e-14)
-            ax.plot(x, y, marker, color=color, ms=4, mfc="none", label=f"jump of {quantity}")
-        ax.axvline(1e-5, color="#888888", lw=0.7, ls=":")
-        ax.set(xscale="log", xlim=(3e-15, 30), title=case, xlabel="share of its size")
-        ax.set_yticks(range(len(names)), names)
+    smooth = table[table["case"] == SHOWN[0]].groupby("scheme")["measured_k"].first()
+    names = list(smooth.sort_values(ascending=False, kind="stable").index)
+    widths = {"gridspec_kw": {"width_ratios": (1, 1, 1, 0.7)}}
+    fig, panels = style.axes(style.PAGE, ROW * len(names) + 1.3, 1, 4, sharey=True, **widths)
+    for ax, case in zip(panels[0], SHOWN, strict=False):
+        _jumps_of(ax, table[table["case"] == case], names)
+        ax.set_title(case.replace(" degrees", "°"))
+    speeds_at = table[(table["case"] == SHOWN[0]) & table["least_key_speed"].notna()]
+    speeds_at = speeds_at.drop_duplicates("scheme")
+    ax = panels[0, -1]
+    ax.plot(speeds_at["least_key_speed"], speeds_at["scheme"].map(names.index), "k.", ms=5)
+    ax.set(title="speed at keys", xlabel="least over mean", xlim=(-0.08, 1.08))
+    ax.set_yticks(range(len(names)), names)
+    ax.set_ylim(len(names) - 0.5, -0.5)
     style.letters(panels[0])
-    style.legend_of(fig, panels[0, 0], 2)
+    style.legend_of(fig, panels[0, 0], 5)
     return fig
+
+
+def _jumps_of(ax: Any, rows: pd.DataFrame, names: list[str]) -> None:
+    """Jumps as shares, filled where they stay put."""
+    for quantity, (marker, color) in LOOKS.items():
+        for jumping, fill, verdict in ((True, color, "jumps"), (False, "none", "continuous")):
+            if quantity == "q" and not jumping:
+                continue  # what every curve should be: only leaps are worth a mark
+            picked = rows[(rows["quantity"] == quantity) & rows["continuous"].eq(not jumping)]
+            x = picked["relative"].clip(1e-14, 30.0)
+            label = f"{quantity} {verdict}"
+            ax.plot(x, picked["scheme"].map(names.index), marker, c=color, mfc=fill, label=label)
+    ax.set(xscale="log", xlim=(3e-15, 100), xlabel="jump over size")
 
 
 def caption(table: pd.DataFrame) -> str:
     return (
-        "Largest jump of angular velocity and acceleration at inner keyframes, as a share of the quantity's "
-        "size on the curve; left of the dotted line counts as continuous. Values below 1e-14 are drawn there."
+        "(a) to (c) Largest jump of angular velocity (omega) and acceleration (alpha) at inner keyframes, as a share "
+        "of the quantity's size on the curve; filled: it stays put when the step shrinks. Leaps of the orientation "
+        "(q), at keyframes or inside segments, are in rad. Values below 1e-14 are drawn there. Rows are sorted by "
+        "measured continuity. (d) Least speed at an inner keyframe over the mean speed "
+        f"({SHOWN[0]}); at 0 the curve stops."
     )

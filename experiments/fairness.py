@@ -1,25 +1,31 @@
-"""Torque energy over the least possible, on committed sets of keyframes."""
+"""Torque and jerk energy, arc length and peak acceleration over those of the least torque."""
 
+from functools import partial
 from typing import Any
 
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from quatspline.instruments.continuity import jumps, measured_continuity
 from quatspline.instruments.fairness import fairness
-from quatspline.registry import found, scheme, version
+from quatspline.instruments.trials import Row, attempted, builder
+from quatspline.quaternion import FloatArray
+from quatspline.registry import found, version
 from quatspline.report import style
+from quatspline.report.heat import ROW, log_heat
 from quatspline.running import Run
-from quatspline.trajectories.sets import COUNT, torque_sets
+from quatspline.trajectories.sets import COUNT, step_sets, torque_sets
 
 TITLE = "Fairness: torque energy over the minimum"
 PAPER = False
-KEYS = ["scheme"]
+KEYS = ["data", "scheme"]
 NOTE = (
-    "Ratios of the integral of |alpha|^2 to that of min-torque (an upper bound of the true minimum) on committed "
-    "seeded sets: 4 to 9 keyframes, steps of 20 to 110 degrees, spacings uniform in [0.5, 1.5], open. Where velocity "
-    "jumps (C0) the energy is infinite. Iterative schemes are solved to 1e-9. peak and length are medians of "
-    "ratios to min-torque."
+    "Ratios to min-torque on the same keyframes (its energy is an upper bound of the true minimum); lower is "
+    "fairer. least to worst: the integral of |alpha|^2; jerk: that of |alpha'|^2; length: of |omega|; peak: the "
+    "largest |alpha|. Seeded sets of 4 to 9 keyframes, spacings uniform in [0.5, 1.5], open: 'committed' has a step "
+    "of 20 to 110 degrees a set, the others one step angle. Where velocity jumps, as measured, the energy is "
+    "infinite. Iterative schemes are solved to 1e-9."
 )
 FORMATS = {
     "least": ".6f",
@@ -32,74 +38,117 @@ FORMATS = {
 }
 REFERENCE = "min-torque"
 TOLERANCE = 1e-9
+COMMITTED = "committed"
+LIMITS = (1e-5, 10.0)
+PROBED = {"quick": 1, "full": 3}
+"""Sets a cell on which jumps of velocity are looked for: they cost as much as the integrals."""
 
 
-def measure(run: Run) -> pd.DataFrame:
-    sets = torque_sets(6 if run.quick else COUNT)
+def cells(run: Run) -> list[dict[str, Any]]:
     names = [REFERENCE, *(n for n in (run.schemes or found()) if n != REFERENCE)]
-    ratios: dict[str, list[dict[str, float]]] = {name: [] for name in names}
-    reasons: dict[str, str] = {}
-    for times, keyframes, _ in run.progress(sets, label="fairness"):
-        least: dict[str, float] = {}
-        for name in names:  # the reference comes first
-            try:
-                cls = scheme(name)
-                options: dict[str, Any] = {"tolerance": TOLERANCE} if cls.iterative else {}
-                own = fairness(cls(times, keyframes, **options))
-                least = least or own
-                ratios[name].append({key: own[key] / least[key] for key in own})
-            except Exception as error:  # what does not apply or fails is a row with its reason
-                reasons.setdefault(name, f"{type(error).__name__}: {error}")
-                if name == REFERENCE:
-                    break
-    return pd.DataFrame([_summary(name, ratios[name], len(sets), reasons) for name in names])
+    angles = (10, 90, 170) if run.quick else range(10, 171, 20)
+    data = [COMMITTED, *(f"{degrees} degrees" for degrees in angles)]
+    return [{"scheme": name, "data": where} for name in names for where in data]
 
 
-def _summary(
-    name: str, ratios: list[dict[str, float]], sets: int, reasons: dict[str, str]
-) -> dict[str, object]:
-    table = pd.DataFrame(ratios)
-    row: dict[str, object] = {
-        "scheme": name,
-        "sets": sets,
-        "failed": sets - len(table),
-        "velocity_jumps": (cls := found()[name].scheme) is not None and cls.continuity < 1,
-        "version": version(name),
-        "failure": reasons.get(name),
+def _sets(run: Run, data: str) -> list[tuple[FloatArray, FloatArray]]:
+    if data == COMMITTED:
+        return [(t, q) for t, q, _ in torque_sets(6 if run.quick else COUNT)]
+    return step_sets(int(data.split()[0]), 1 if run.quick else 10)
+
+
+def measure_cell(run: Run, scheme: str, data: str) -> list[Row]:
+    rows = []
+    probed = PROBED["quick" if run.quick else "full"]
+    for index, (times, keyframes) in enumerate(_sets(run, data)):
+        measured = attempted(partial(_measured, scheme, times, keyframes, index < probed))
+        rows += [{"scheme": scheme, "data": data, "set": index, **row} for row in measured]
+    return rows
+
+
+def _measured(name: str, times: FloatArray, keyframes: FloatArray, probe: bool) -> list[Row]:
+    curve = builder(name, TOLERANCE)(times, keyframes)
+    jump = probe and measured_continuity(jumps(curve)) < 1
+    return [{**fairness(curve), "velocity_jumps": jump, "version": version(name)}]
+
+
+def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
+    """Ratios to the reference's own sets, and their distribution."""
+    keys, values = ["data", "set"], ["torque", "jerk", "length", "peak"]
+    columns = ["velocity_jumps", "version", "failure", *values]
+    table = table.reindex(columns=["scheme", *keys, *columns])
+    least = table.loc[table["scheme"] == REFERENCE, [*keys, *values]]
+    joined = table.merge(least, on=keys, suffixes=("", "_least"), how="left")
+    for value in values:
+        joined[value] = joined[value] / joined[f"{value}_least"]
+    groups = joined.groupby(["scheme", "data"], sort=False)
+    return pd.DataFrame([_summary(rows) for _, rows in groups])
+
+
+def _summary(rows: pd.DataFrame) -> Row:
+    known = rows[rows["torque"].notna()]
+    reasons = rows["failure"].dropna()
+    lost = f"no {REFERENCE} to compare with" if len(known) < len(rows) else None
+    jump = bool(rows["velocity_jumps"].eq(True).any())
+    torque = known["torque"] + (np.inf if jump else 0.0)
+    summary: Row = {
+        "scheme": rows["scheme"].iloc[0],
+        "data": rows["data"].iloc[0],
+        "sets": len(rows),
+        "failed": len(rows) - len(known),
+        "velocity_jumps": jump,
+        "version": rows["version"].dropna().iloc[0] if rows["version"].notna().any() else None,
+        "failure": reasons.iloc[0] if len(reasons) else lost,
     }
-    if len(table):
-        torque = table["torque"] + (np.inf if row["velocity_jumps"] else 0.0)
-        row |= {
+    if len(known):
+        summary |= {
             "least": torque.min(),
             "median": torque.median(),
-            "q95": torque.quantile(0.95),
+            "q95": np.inf if jump else torque.quantile(0.95),
             "worst": torque.max(),
-            "jerk_median": table["jerk"].median(),
-            "length_median": table["length"].median(),
-            "peak_median": table["peak"].median(),
+            "jerk_median": known["jerk"].median(),
+            "length_median": known["length"].median(),
+            "peak_median": known["peak"].median(),
         }
-    return row
+    return summary
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    rows = table[~table["velocity_jumps"] & table["median"].notna()].sort_values(
-        "median", ascending=False
+    finite = table[np.isfinite(table["median"])]
+    committed = finite[finite["data"] == COMMITTED].set_index("scheme")["median"].sort_values()
+    names = [*committed.index, *sorted(set(finite["scheme"]) - set(committed.index))]
+    fig, panels = style.axes(
+        style.PAGE, ROW * len(names) + 1.2, 1, 2, gridspec_kw={"width_ratios": (1, 1.35)}
     )
-    fig, panels = style.axes(style.PAGE, 0.19 * len(rows) + 0.9)
-    ax = panels[0, 0]
-    y = np.arange(len(rows))
-    excess = {key: (rows[key] - 1.0).clip(lower=1e-6) for key in ("least", "median", "worst")}
-    ax.hlines(y, excess["least"], excess["worst"], color="#bbbbbb", lw=2)
-    for x, height, name in zip(excess["median"], y, rows["scheme"], strict=True):
-        looks = style.scheme_style(name)
-        ax.plot(x, height, color=looks["color"], marker=looks["marker"], ms=5)
-    ax.set_yticks(y, rows["scheme"])
-    ax.set(xscale="log", xlabel="torque energy over the minimum, minus 1")
+    _excess(panels[0, 0], finite[finite["data"] == COMMITTED], names)
+    steps = finite[finite["data"] != COMMITTED]
+    steps = steps.assign(angle=steps["data"].str.split().str[0].astype(int))
+    shown = (steps.pivot(index="scheme", columns="angle", values="median") - 1.0).reindex(names)
+    label = "median torque energy over the minimum, minus 1"
+    log_heat(panels[0, 1], shown.clip(lower=LIMITS[0]), label, LIMITS, names_shown=False)
+    panels[0, 1].set(title="by step angle", xlabel="step angle (degrees)")
+    style.letters(panels[0])
     return fig
 
 
+def _excess(ax: Any, rows: pd.DataFrame, names: list[str]) -> None:
+    """Median and range of the excess on the committed sets, in the order of the names."""
+    rows = rows.set_index("scheme").reindex(names)
+    y = np.arange(len(names))
+    excess = {key: (rows[key] - 1.0).clip(lower=1e-6) for key in ("least", "median", "worst")}
+    ax.hlines(y, excess["least"], excess["worst"], color="#bbbbbb", lw=2)
+    for x, height, name in zip(excess["median"], y, names, strict=True):
+        looks = style.scheme_style(name)
+        ax.plot(x, height, color=looks["color"], marker=looks["marker"], ms=4.5)
+    ax.set_yticks(y, names)
+    ax.set(xscale="log", xlabel="excess of torque energy", title="committed sets")
+    ax.set_ylim(len(names) - 0.5, -0.5)
+
+
 def caption(table: pd.DataFrame) -> str:
+    sets = int(table.loc[table["data"] == COMMITTED, "sets"].max())
     return (
-        f"Excess of the torque energy over the minimum on {int(table['sets'].max())} keyframe sets: median (marker), "
-        "range (bar); below 1e-6 drawn there. Schemes whose velocity jumps are left out: theirs is infinite."
+        f"(a) Excess of the torque energy over the minimum on {sets} committed keyframe sets: median (marker), range "
+        "(bar); below 1e-6 drawn there; lower is fairer. (b) Its median on sets of one step angle; grey: the "
+        "scheme does not apply, or its energy is infinite. Schemes whose velocity jumps everywhere are left out."
     )

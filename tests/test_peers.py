@@ -18,6 +18,7 @@ import quatspline as qs
 from quatspline import numeric, quaternion
 from quatspline.curve import Curve
 from quatspline.families.peers import quiet, reflected
+from quatspline.instruments.continuity import jumps
 from quatspline.quaternion import FloatArray
 from quatspline.registry import version
 from walks import apart, apart_up_to_sign, inside, loop, spin, uneven, walk
@@ -308,6 +309,24 @@ def test_splines_own_velocity_is_not_that_of_its_curve() -> None:
     off = np.linalg.norm(np.array([library.evaluate(x, 1) for x in t]) - world, axis=1)
     assert off[0] > 1e-4
     assert off[1] < 1e-8
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param("numpy-quaternion-squad", marks=needs("quaternion")),
+        pytest.param("interpolatepy-squad-c2", marks=needs("interpolatepy")),
+        pytest.param("interpolatepy-quaternion-spline", marks=needs("interpolatepy")),
+    ],
+)
+def test_squads_leap_inside_segments_where_steps_are_large(name: str) -> None:
+    """A rotation by more than a rad within 1e-10 of a segment, at 170 degrees; none at 60."""
+    leaps = {}
+    for degrees in (60.0, 170.0):
+        cases = (qs.build(name, uneven(7), walk(7, degrees, seed)) for seed in range(3))
+        leaps[degrees] = max(jumps(curve).loc[0, "jump"] for curve in cases)
+    assert leaps[60.0] < 1e-6
+    assert leaps[170.0] > 1.0
 
 
 @needs("splines")

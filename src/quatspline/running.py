@@ -124,7 +124,7 @@ def _perform(experiment: Experiment, run: Run, results: Results) -> None:
     )
     if hasattr(module, "caption"):
         results.text(f"{name}.caption.txt", module.caption(table).strip() + "\n")
-    if hasattr(module, "draw"):
+    if hasattr(module, "draw") and not _all_failed(table):
         _draw(module, table, name, results)
 
 
@@ -136,6 +136,11 @@ def _measured(name: str, module: ModuleType, run: Run, results: Results) -> Any:
     raise TypeError(
         "no function measure(run), nor cells(run) and measure_cell(run, ...), in the file"
     )
+
+
+def _all_failed(table: pd.DataFrame) -> bool:
+    """Whether no row is a measurement: there is nothing to draw."""
+    return "failure" in table and bool(table["failure"].notna().all())
 
 
 def _checked(table: Any) -> pd.DataFrame:

@@ -34,6 +34,11 @@ class PeerCurve(Curve):
     # What a library does not publish (order, support, constant rate) is what we measured.
     orders: tuple[int, ...] = (0,)
 
+    def _published(self, t: FloatArray, order: int) -> FloatArray | None:
+        """Body rates (m, 3) that the library publishes and its wrapper does not offer, being others
+        than the curve's; None without any.  Instruments report how far off they are."""
+        return None
+
     def _build(self, keyframes: Keyframes, given: dict[str, Any]) -> None:
         with quiet():
             super()._build(keyframes, given)
@@ -96,6 +101,12 @@ def rows(quaternions: Any, first: FloatArray) -> FloatArray:
     """
     sign = -1.0 if first[0] < 0.0 else 1.0
     return sign * np.array([q.wxyz for q in quaternions], dtype=float).reshape(-1, 4)
+
+
+def published_velocity(curve: Any, t: FloatArray, orientation: FloatArray) -> FloatArray:
+    """``evaluate(t, 1)`` of a curve of `splines`, world frame, in the body frame (m, 3)."""
+    with quiet():
+        return body_frame(orientation, np.array([curve.evaluate(x, 1) for x in t], dtype=float))
 
 
 class InterpolatePyCurve(PeerCurve):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 
@@ -13,6 +15,12 @@ from quatspline.trajectories.smooth import INNER, SPAN, tumble, tumble_rates
 
 SAMPLES = 8
 """Samples a segment, in its interior: enough to see the largest error to a few per cent."""
+
+ERRORS = {"inner_angle": "", "inner_omega": "_omega", "inner_alpha": "_alpha"}
+"""Errors that orders are read from, with the suffix of their columns."""
+
+TARGETS = {"spacing_1deg": 1.0, "spacing_0.1deg": 0.1, "spacing_0.01deg": 0.01}
+"""Angles in degrees that a spacing is looked for at, by column."""
 
 
 def knots(rng: np.random.Generator, kind: str, count: int) -> FloatArray:
@@ -47,19 +55,63 @@ def errors(curve: Curve) -> dict[str, float]:
 
 
 def with_slopes(table: pd.DataFrame, by: list[str], levels: int = 5) -> pd.DataFrame:
-    """Adds to rows of refinements: the slope from the level before, and a regression over levels.
+    """Adds to rows of refinements the orders that errors fall with in the spacing.
 
-    Needs columns keyframes and inner_angle; slopes are orders in the spacing.
+    Needs columns keyframes and `ERRORS`.  ``slope``, ``slope_omega``, ``slope_alpha`` are the orders
+    from the level before, ``regression`` (and so on) those over the last levels.
     """
     groups = []
     for _, rows in table.groupby(by, sort=False):
         rows = rows.sort_values("keyframes")
         x = -np.log(rows["keyframes"].to_numpy(dtype=float) - 1.0)
-        y = np.log(rows["inner_angle"].to_numpy(dtype=float))
-        slope = np.full(len(rows), np.nan)
-        slope[1:] = np.diff(y) / np.diff(x)
-        known = np.isfinite(y)
-        last = np.flatnonzero(known)[-levels:]
-        fit = np.polyfit(x[last], y[last], 1)[0] if last.size >= 3 else np.nan
-        groups.append(rows.assign(slope=slope, regression=fit))
+        orders: dict[str, Any] = {}
+        for error, suffix in ERRORS.items():
+            y = _logs(rows, error)
+            slope = np.full(len(rows), np.nan)
+            slope[1:] = np.diff(y) / np.diff(x)
+            last = np.flatnonzero(np.isfinite(y))[-levels:]
+            fit = np.polyfit(x[last], y[last], 1)[0] if last.size >= 3 else np.nan
+            orders |= {f"slope{suffix}": slope, f"regression{suffix}": fit}
+        groups.append(rows.assign(**orders))
     return pd.concat(groups, ignore_index=True)
+
+
+def with_reach(table: pd.DataFrame, by: list[str]) -> pd.DataFrame:
+    """Adds the spacing from which on the inner angle stays below 1, 0.1 and 0.01 degrees.
+
+    Columns of `TARGETS` (larger is better: fewer keyframes do), interpolated between levels on
+    logarithms; NaN where the levels do not show it, with the reason in column ``unreached``.
+    """
+    groups = []
+    for _, rows in table.groupby(by, sort=False):
+        rows = rows.sort_values("keyframes")
+        x, y = _logs(rows, "spacing"), _logs(rows, "inner_angle")
+        reached = {name: reach(x, y, np.log(np.radians(t))) for name, t in TARGETS.items()}
+        reasons = [f"{TARGETS[name]:g} degrees: {why}" for name, (_, why) in reached.items() if why]
+        spacings = {name: value for name, (value, _) in reached.items()}
+        groups.append(rows.assign(**spacings, unreached="; ".join(reasons) or None))
+    return pd.concat(groups, ignore_index=True)
+
+
+def reach(x: FloatArray, y: FloatArray, goal: float) -> tuple[float, str | None]:
+    """The spacing e^x from which on the errors e^y stay below e^goal, and why it is NaN if it is.
+
+    x (m,) falls; levels whose error is not finite are left out.
+    """
+    known = np.isfinite(y)
+    x, y = x[known], y[known]
+    if not known.any():
+        return np.nan, "no error measured"
+    above = np.flatnonzero(y > goal)
+    if not above.size:
+        return np.nan, f"met at every spacing, up to {np.exp(x[0]):.3g}"
+    i = int(above[-1])
+    if i == x.size - 1:
+        return np.nan, f"not met at a spacing of {np.exp(x[-1]):.3g}"
+    share = (y[i] - goal) / (y[i] - y[i + 1])
+    return float(np.exp(x[i] + share * (x[i + 1] - x[i]))), None
+
+
+def _logs(rows: pd.DataFrame, column: str) -> FloatArray:
+    with np.errstate(divide="ignore"):
+        return np.log(rows[column].to_numpy(dtype=float))

@@ -1,8 +1,11 @@
 """Continuity at keyframes: jumps of q, omega, alpha and of alpha's derivative, and the speed there.
 
 A jump is the difference of the one-sided limits, extrapolated from inside the segments on both sides
-with two steps.  What is continuous leaves only extrapolation error and rounding, which fall with the
-step; what jumps stays put.  The next order is the control that must stay.
+with two steps.  What is continuous leaves only extrapolation error, which falls with the step, and
+rounding; what jumps stays put.  The next order is the control that must stay.
+
+Closed forms serve where the curve has its own.  A library's curve is known by its orientations, in
+double precision: nine-point stencils on these tell jumps of the acceleration above 1e-6 / h^2.
 """
 
 from __future__ import annotations
@@ -12,8 +15,10 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
+from quatspline import quaternion
 from quatspline.curve import Curve
-from quatspline.instruments.derivatives import derivative, one_sided
+from quatspline.instruments.derivatives import closed_forms, one_sided, shape_rates
+from quatspline.instruments.trials import Row
 from quatspline.quaternion import FloatArray
 
 QUANTITIES = ("q", "omega", "alpha", "jerk")
@@ -21,37 +26,47 @@ UNITS = ("1", "rad/t", "rad/t^2", "rad/t^3")
 STEPS = (1e-2, 1e-3)
 """Steps as shares of the adjoining segment."""
 
-CONTINUOUS = (1e-5, 1e-5, 1e-5, 1e-3)
-"""Jumps below this share of the size on the curve, an entry an order, count as none (the last order is a
-difference of accelerations, numerical ones too) ..."""
+ROUNDING = 1e-8
+"""Jumps of closed forms below this share of the size on the curve count as none: rounding ..."""
+UNSOLVED = 30.0
+"""... and what a solve leaves: its residual times this, over the shortest spacing to the order (the third
+derivatives of cubic blending functions are 6 to 18) ..."""
+STENCIL = (1e-12, 1e-7, 1e-6, 1e-3)
+"""... and jumps of stencils on orientations below these, an entry an order, over the shortest spacing to
+that order: ten to a hundred times the rounding that smooth segments were seen to leave."""
 FALLING = 0.05
-"""... and so do those that fall to this share when the step falls to a tenth."""
+"""So do those that fall to this share when the step falls to a tenth."""
 
-DENSE = 10
+DENSE = 7
 """Samples a segment for the size of a quantity."""
+
+HALVINGS, GAP = 30, 1e-6
+"""Of an interval between samples, and the angle in rad above which what is left is a jump: nothing that a
+curve turns by in 1e-10 of a segment."""
 
 
 def jumps(curve: Curve, orders: Sequence[int] = (0, 1, 2, 3)) -> pd.DataFrame:
     """Jumps of a single-track curve, one row a derivative order asked for.
 
-    Columns: order (0 to 3), quantity, unit, jump (largest over the knots, in its unit; lower is
-    smoother), coarse_jump (with the tenfold step), size (largest on the curve), relative, and
-    continuous (a verdict).
+    Columns: order (0 to 3), quantity, unit, jump (largest over the knots, in its unit, for order 0 also
+    inside segments, as an angle; lower is smoother), coarse_jump (with the tenfold step), size (largest
+    on the curve), relative (0 where the size itself is rounding), and continuous (a verdict).
+    Derivatives are those of `shape_rates`.
     """
     at, step = _inner_knots(curve)
-    dense = _dense(curve)
-    rows, sizes = [], dict[int, float]()
+    coarse, fine = (_jumps(curve, at, share * step) for share in STEPS)
+    gap = _gap(curve) if 0 in orders else 0.0
+    coarse[0], fine[0] = max(coarse[0], gap), max(fine[0], gap)
+    rows, sizes = [], _sizes(curve)
     for order in orders:
-        # the size of the order below, a step of which is a scale where this order is 0
-        before = sizes.get(order - 1) or (_size(curve, dense, order - 1) if order else 1.0)
-        coarse, fine = (_jump(curve, at, share * step, order) for share in STEPS)
-        size = sizes[order] = _size(curve, dense, order)
-        relative = fine / size if size > 0.0 else 0.0
-        scale = max(size, before / float(np.diff(curve.times).mean()))
-        smooth = fine <= CONTINUOUS[order] * scale or fine <= FALLING * coarse
-        rows.append((order, QUANTITIES[order], UNITS[order], fine, coarse, size, relative, smooth))
-    names = ["order", "quantity", "unit", "jump", "coarse_jump", "size", "relative", "continuous"]
-    return pd.DataFrame(rows, columns=names)
+        size = sizes[order]
+        floor = _floor(curve, order, size)
+        smooth = fine[order] <= floor or fine[order] <= FALLING * coarse[order]
+        relative = fine[order] / size if size > floor else 0.0
+        names = (order, QUANTITIES[order], UNITS[order])
+        rows.append((*names, fine[order], coarse[order], size, relative, smooth))
+    columns = ["order", "quantity", "unit", "jump", "coarse_jump", "size", "relative", "continuous"]
+    return pd.DataFrame(rows, columns=columns)
 
 
 def measured_continuity(table: pd.DataFrame) -> int:
@@ -60,19 +75,17 @@ def measured_continuity(table: pd.DataFrame) -> int:
     return int(broken.min()) - 1 if len(broken) else int(table["order"].max())
 
 
-def speeds(curve: Curve) -> dict[str, float]:
+def speeds(curve: Curve) -> Row:
     """Least speed at inner keyframes and peak speed, as shares of the mean speed.
 
     A curve that stops at every keyframe is smooth cheaply: the first is then 0.
     """
     at, _ = _inner_knots(curve)
-    speed = np.linalg.norm(derivative(curve, _dense(curve), 1), axis=-1)
-    at_keys = np.linalg.norm(derivative(curve, at, 1), axis=-1)
+    dense = _dense(curve)
+    speed, at_keys = (np.linalg.norm(shape_rates(curve, t)[0], axis=-1) for t in (dense, at))
     mean = float(speed.mean())
-    return {
-        "least_key_speed": float(at_keys.min()) / mean,
-        "peak_speed": float(speed.max()) / mean,
-    }
+    least = float(at_keys.min()) / mean if at.size else np.nan
+    return {"least_key_speed": least, "peak_speed": float(speed.max()) / mean}
 
 
 def _inner_knots(curve: Curve) -> tuple[FloatArray, FloatArray]:
@@ -90,16 +103,44 @@ def _dense(curve: Curve) -> FloatArray:
     return (times[:-1, None] + np.diff(times)[:, None] * u).reshape(-1)
 
 
-def _jump(curve: Curve, at: FloatArray, step: FloatArray, order: int) -> float:
+def _jumps(curve: Curve, at: FloatArray, step: FloatArray) -> list[float]:
+    """The largest jump of every order, 0 without knots."""
     if at.size == 0:
-        return 0.0
-    sides = [one_sided(curve, at, step, side, order) for side in (1, -1)]
-    return float(np.linalg.norm(sides[0] - sides[1], axis=-1).max())
+        return [0.0] * len(QUANTITIES)
+    after, before = (one_sided(curve, at, step, side) for side in (1, -1))
+    gaps = (np.linalg.norm(a - b, axis=-1) for a, b in zip(after, before, strict=True))
+    return [float(gap.max()) for gap in gaps]
 
 
-def _size(curve: Curve, dense: FloatArray, order: int) -> float:
-    if order < 3:
-        return float(np.linalg.norm(derivative(curve, dense, order), axis=-1).max())
-    h = np.repeat(np.diff(curve.times), DENSE) * STEPS[1]
-    slope = derivative(curve, dense + h, 2) - derivative(curve, dense - h, 2)
-    return float(np.linalg.norm(slope / (2.0 * h[:, None]), axis=-1).max())
+def _sizes(curve: Curve) -> list[float]:
+    """Largest sizes of q, of both rates and of the acceleration's slope between samples."""
+    omega, alpha = shape_rates(curve, _dense(curve))
+    apart = np.diff(curve.times)[:, None, None] / DENSE
+    slope = np.diff(alpha.reshape(-1, DENSE, 3), axis=1) / apart
+    return [1.0, *(float(np.linalg.norm(x, axis=-1).max()) for x in (omega, alpha, slope))]
+
+
+def _gap(curve: Curve) -> float:
+    """The angle of a jump of the orientation inside segments, 0 without one.
+
+    The interval of the largest change is halved until only a jump can be left of it.
+    """
+    t = _dense(curve)
+    change = quaternion.distance(curve(t[1:]), curve(t[:-1]))
+    lo, hi = t[np.argmax(change)], t[np.argmax(change) + 1]
+    for _ in range(HALVINGS):
+        middle = 0.5 * (lo + hi)
+        q = curve(np.array([lo, middle, hi]))
+        first, second = quaternion.distance(q[1:], q[:-1])
+        lo, hi = (lo, middle) if first > second else (middle, hi)
+    left = float(quaternion.distance(curve(lo), curve(hi)))
+    return left if left > GAP else 0.0
+
+
+def _floor(curve: Curve, order: int, size: float) -> float:
+    """What a jump of this order has to exceed to be told from rounding."""
+    scale = float(np.diff(curve.times).min()) ** -order
+    if not closed_forms(curve):
+        return STENCIL[order] * scale
+    report = curve.solve_report
+    return ROUNDING * size + (UNSOLVED * float(report.residual) * scale if report else 0.0)

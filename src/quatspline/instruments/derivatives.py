@@ -36,13 +36,34 @@ def analytic(curve: Curve) -> bool:
     return {1, 2} <= set(curve.orders) - set(curve.numeric_orders)
 
 
-def one_sided(curve: Curve, at: FloatArray, step: FloatArray, side: int, order: int) -> FloatArray:
-    """Limits (m, width) of a derivative at knots ``at`` (m,), from one side (+1 or -1).
+def closed_forms(curve: Curve) -> bool:
+    """Whether both rates are closed forms of this package, tested against the curve."""
+    return analytic(curve) and curve.peer is None
 
-    Values at 1 to 4 steps (m,) away are extrapolated; order 3 is the slope of order 2.
+
+def shape_rates(curve: Curve, t: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Angular velocity and acceleration (m, 3) of the curve as it runs, whatever a library reports.
+
+    A peer's rates are a claim about its curve, so its orientations are differentiated.
+    """
+    if closed_forms(curve):
+        return curve(t, 1), curve(t, 2)
+    since, _ = curve._wrapped(np.asarray(t, dtype=float))
+    return numeric.rates(curve._orientation, since, curve.keyframes.knots)
+
+
+def one_sided(
+    curve: Curve, at: FloatArray, step: FloatArray, side: int
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Limits at knots ``at`` (m,) from one side (+1 or -1): q (m, 4), then three derivatives (m, 3).
+
+    Values at 1 to 4 steps (m,) away are extrapolated; the last is the slope of the acceleration.
     """
     nodes = at[:, None] + side * step[:, None] * np.arange(1.0, ONE_SIDED + 1)
-    inner = derivative(curve, nodes.reshape(-1), min(order, 2)).reshape(*nodes.shape, -1)
-    if order < 3:
-        return np.einsum("j,mji->mi", _LIMIT, inner)
-    return np.einsum("j,mji->mi", _SLOPE, inner) / (side * step[:, None])
+    t = nodes.reshape(-1)
+    q, omega, alpha = (
+        values.reshape(*nodes.shape, -1) for values in (curve(t), *shape_rates(curve, t))
+    )
+    limits = [np.einsum("j,mji->mi", _LIMIT, values) for values in (q, omega, alpha)]
+    slope = np.einsum("j,mji->mi", _SLOPE, alpha) / (side * step[:, None])
+    return limits[0], limits[1], limits[2], slope

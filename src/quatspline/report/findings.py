@@ -156,11 +156,12 @@ def _orders(cell: Ledger) -> tuple[Part, ...]:
 
 def _torque(cell: Ledger) -> tuple[Part, ...]:
     names = ("nielson", "kim", "local-quintic", "scipy-rotation-spline", "squad", "quartic")
-    medians = [cell("fairness", "median", scheme=name) for name in names]
+    where = {"data": "committed"}
+    medians = [cell("fairness", "median", scheme=name, **where) for name in names]
     return said(
         "Torque energy over the least possible, median of {sets:d} committed keyframe sets: "
         f"{_listed(names, '.4f')}. local-quintic is local and solves nothing.",
-        sets=cell("fairness", "sets", scheme="local-quintic"),
+        sets=cell("fairness", "sets", scheme="local-quintic", **where),
         **_numbered(medians),
     )
 

@@ -22,6 +22,19 @@ def torque_sets(count: int = COUNT) -> list[tuple[FloatArray, FloatArray, float]
         rng = np.random.default_rng([SEED, index])
         n = int(rng.integers(4, 10))
         degrees = float(rng.uniform(20.0, 110.0))
-        times = np.concatenate([[0.0], np.cumsum(rng.uniform(0.5, 1.5, n - 1))])
-        sets.append((times, walk(rng, n, degrees)[:, 0], degrees))
+        sets.append((*_uneven(rng, n, degrees), degrees))
     return sets
+
+
+def step_sets(degrees: int, count: int) -> list[tuple[FloatArray, FloatArray]]:
+    """Open sets (times (n,), keyframes (n, 4)) of one step angle, otherwise as `torque_sets`."""
+    sets = []
+    for index in range(count):
+        rng = np.random.default_rng([SEED, degrees, index])
+        sets.append(_uneven(rng, int(rng.integers(4, 10)), float(degrees)))
+    return sets
+
+
+def _uneven(rng: np.random.Generator, n: int, degrees: float) -> tuple[FloatArray, FloatArray]:
+    times = np.concatenate([[0.0], np.cumsum(rng.uniform(0.5, 1.5, n - 1))])
+    return times, walk(rng, n, degrees)[:, 0]

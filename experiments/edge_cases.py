@@ -1,0 +1,90 @@
+"""What every scheme does with keyframes that schemes are known to stumble over."""
+
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from quatspline.instruments.edges import edge_result
+from quatspline.instruments.trials import TIGHT, Row
+from quatspline.registry import found, version
+from quatspline.report import style
+from quatspline.report.heat import ROW, label_cells
+from quatspline.running import Run
+from quatspline.trajectories.edges import edge_cases
+
+TITLE = "Edge cases"
+PAPER = False
+KEYS = ["case", "scheme"]
+NOTE = (
+    "result: exact (to 1e-6 of the largest step), wrong, NaN, or error with its reason. checked: against the truth, "
+    "the constant rate or rest that keyframes suggest (claimed_constant_rate says where a scheme keeps one), or, "
+    "where there is none, that keys are met and all is finite and of norm 1. deviation: the largest angle, lower "
+    "is better; relative: over the largest step. Iterative schemes are solved to 1e-11. Both sizes are one."
+)
+FORMATS = {"deviation": ".1e", "relative": ".1e"}
+RESULTS = {"exact": "#009e73", "wrong": "#e6b84c", "NaN": "#d55e00", "error": "#b0b0b0"}
+"""Colours of results, apart for colour-blind readers and, with the text in the cells, without colour."""
+
+
+def cells(run: Run) -> list[dict[str, Any]]:
+    return [{"scheme": name} for name in run.schemes or found()]
+
+
+def measure_cell(run: Run, scheme: str) -> list[Row]:
+    cls = found()[scheme].scheme
+    options = {"tolerance": TIGHT} if cls is not None and cls.iterative else {}
+    claim = None if cls is None else cls.constant_rate
+    base = {"scheme": scheme, "claimed_constant_rate": claim, "version": version(scheme)}
+    return [
+        {"case": case.name, "difficulty": case.difficulty}
+        | base
+        | edge_result(case, scheme, **options)
+        for case in edge_cases().values()
+    ]
+
+
+def draw(table: pd.DataFrame) -> Figure:
+    results = table.pivot(index="scheme", columns="case", values="result")
+    results = results[list(edge_cases())]
+    good = (results == "exact").sum(axis=1).sort_values(ascending=False, kind="stable").index
+    results = results.loc[good]
+    fig, panels = style.axes(style.PAGE, ROW * len(results) + 1.2)
+    ax = panels[0, 0]
+    codes = results.apply(lambda column: column.map(list(RESULTS).index))
+    ax.imshow(
+        codes, cmap=mpl.colors.ListedColormap(list(RESULTS.values())), vmin=0, vmax=3, aspect="auto"
+    )
+    relative = table.pivot(index="scheme", columns="case", values="relative")
+    relative = relative.loc[results.index, results.columns]
+    texts = results.where(results != "wrong", relative.map(_short))
+    label_cells(ax, texts, results == "NaN")
+    ax.set_xticks(
+        range(results.shape[1]), [_two_lines(str(name)) for name in results], fontsize=6.5
+    )
+    ax.set_yticks(range(len(results)), list(results.index))
+    ax.tick_params(length=0, top=True, labeltop=True, bottom=False, labelbottom=False)
+    ax.grid(visible=False)
+    return fig
+
+
+def _short(relative: float) -> str:
+    return (
+        "wrong"
+        if np.isnan(relative)
+        else f"{relative:.0e}".replace("e-0", "e-").replace("e+00", "")
+    )
+
+
+def _two_lines(name: str) -> str:
+    return "\n".join(name.split())
+
+
+def caption(table: pd.DataFrame) -> str:
+    return (
+        "What each scheme makes of edge cases. Numbers: how far off, over the largest step, where the result is wrong; "
+        "'error': refused or failed, with the reason in the table. A scheme without a closed curve refuses the "
+        "full turn, one of uniform times refuses others. Rows are sorted by the number of exact results."
+    )

@@ -1,0 +1,78 @@
+"""What changes of frame, of clock and of key signs do to a curve beyond that change."""
+
+from functools import partial
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from quatspline.instruments.invariance import INVARIANT, PROPERTIES, invariance
+from quatspline.instruments.trials import Row, attempted, builder, facts
+from quatspline.quaternion import FloatArray
+from quatspline.registry import found
+from quatspline.registry import scheme as scheme_class
+from quatspline.report import style
+from quatspline.report.heat import ROW, log_heat
+from quatspline.running import Run
+from quatspline.trajectories.walks import walk
+
+TITLE = "Invariance"
+PAPER = False
+KEYS = ["step_degrees", "scheme", "property"]
+NOTE = (
+    "deviation: the largest angle between the curve of changed keyframes and the curve changed likewise (lower is "
+    "better); relative: its share of the step; invariant: relative at most 1e-7. half-turn shell: base frames in which "
+    "a keyframe lies 170 to 190 degrees from the frame of reference. Random walks of 7 keyframes at uneven times "
+    "(uniform where a scheme takes no others); iterative schemes are solved to 1e-11."
+)
+FORMATS = {"deviation": ".1e", "relative": ".1e"}
+LIMITS = (1e-16, 10.0)
+COUNT = 7
+GRID = 1024.0
+"""Times are multiples of 1 / GRID: shifts of them are exact."""
+
+
+def cells(run: Run) -> list[dict[str, Any]]:
+    names = run.schemes or list(found())
+    angles = (60,) if run.quick else (20, 60, 120, 170)
+    return [{"scheme": name, "degrees": degrees} for name in names for degrees in angles]
+
+
+def measure_cell(run: Run, scheme: str, degrees: int) -> list[Row]:
+    base = {"step_degrees": degrees, "scheme": scheme}
+    return [base | row for row in attempted(partial(_measured, run, scheme, degrees))]
+
+
+def _measured(run: Run, name: str, degrees: int) -> list[Row]:
+    times, keyframes = _keyframes(run, degrees)
+    if not scheme_class(name).non_uniform:
+        times = np.arange(float(COUNT))
+    build = builder(name)
+    rows = invariance(build, times, keyframes, run.rng("invariance", degrees, "changes"))
+    return [row | facts(build(times, keyframes)) for row in rows]
+
+
+def _keyframes(run: Run, degrees: int) -> tuple[FloatArray, FloatArray]:
+    rng = run.rng("invariance", degrees)
+    h = np.round(GRID * np.exp(rng.uniform(-1.0, 1.0, COUNT - 1))) / GRID
+    return np.concatenate([[0.0], np.cumsum(h)]), walk(rng, COUNT, float(degrees))[:, 0]
+
+
+def draw(table: pd.DataFrame) -> Figure:
+    worst = table.groupby(["scheme", "property"])["relative"].max().unstack()
+    worst = worst.reindex(columns=list(PROPERTIES)).dropna(how="all")
+    order = (worst > INVARIANT).sum(axis=1).sort_values(kind="stable").index
+    fig, panels = style.axes(style.PAGE, ROW * len(worst) + 1.4)
+    shown = worst.loc[order].clip(lower=LIMITS[0])
+    shown.columns = [str(name).replace(" ", "\n", 1) for name in shown]
+    log_heat(panels[0, 0], shown, "largest deviation over the step", LIMITS)
+    return fig
+
+
+def caption(table: pd.DataFrame) -> str:
+    angles = ", ".join(str(a) for a in sorted(table["step_degrees"].unique()))
+    return (
+        f"Largest deviation from each invariance over walks with steps of {angles} degrees, as a share of the step; "
+        "rows are sorted by the number of properties that do not hold to 1e-7; grey: not measured."
+    )

@@ -1,0 +1,91 @@
+"""How far a change of one keyframe reaches, in segments and in size."""
+
+from functools import partial
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from quatspline.instruments.locality import locality, responses
+from quatspline.instruments.trials import Row, attempted, builder, facts, records
+from quatspline.registry import found
+from quatspline.registry import scheme as scheme_class
+from quatspline.report import style
+from quatspline.report.heat import ROW, log_heat
+from quatspline.running import Run
+from quatspline.trajectories.walks import walk
+
+TITLE = "Locality"
+PAPER = False
+KEYS = ["step_degrees", "scheme", "offset"]
+NOTE = (
+    "The middle of 41 keyframes of a random walk, uniform times, is turned by 0.01 rad about three axes. response: "
+    "the largest angle that the curve moves by on a segment, over that of the turn; offset: the segment, counted "
+    "from the keyframe. amplification: the largest response (lower is calmer, 1 is neutral); reach_before, "
+    "reach_after: segments to the last one with a response over 1e-8; support: their sum, which is the number of "
+    "keyframes that shape a segment; decay: factor a segment beyond the second (lower is more local). "
+    "claimed_support is empty where all keyframes count; agrees: the measured support is the claimed one, or a tail "
+    "decays where none is claimed."
+)
+FORMATS = {"response": ".2e", "amplification": ".3f", "decay": ".3f"}
+COUNT = 41
+SHOWN = 8
+"""Segments to either side in the figure."""
+
+
+def cells(run: Run) -> list[dict[str, Any]]:
+    names = run.schemes or list(found())
+    angles = (60,) if run.quick else (10, 60, 120)
+    return [{"scheme": name, "degrees": degrees} for name in names for degrees in angles]
+
+
+def measure_cell(run: Run, scheme: str, degrees: int) -> list[Row]:
+    base = {"step_degrees": degrees, "scheme": scheme}
+    return [base | row for row in attempted(partial(_measured, run, scheme, degrees))]
+
+
+def _measured(run: Run, name: str, degrees: int) -> list[Row]:
+    times = np.arange(float(COUNT))
+    keyframes = walk(run.rng("locality", degrees), COUNT, float(degrees))[:, 0]
+    build = builder(name)
+    table = responses(build, times, keyframes)
+    summary = locality(table)
+    claimed = scheme_class(name).support
+    agrees = not np.isnan(summary["decay"]) if claimed is None else summary["support"] == claimed
+    more = {"claimed_support": claimed, "agrees": agrees, **facts(build(times, keyframes))}
+    return [row | summary | more for row in records(table)]
+
+
+def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
+    whole = ["offset", "reach_before", "reach_after", "support", "claimed_support"]
+    return table.astype({name: "Int64" for name in whole if name in table})
+
+
+def draw(table: pd.DataFrame) -> Figure:
+    table = table[table["step_degrees"] == 60]
+    near = table[table["offset"].abs() <= SHOWN]
+    shown = near.pivot(index="scheme", columns="offset", values="response")
+    summary = table.drop_duplicates("scheme").set_index("scheme").loc[shown.index]
+    reach = summary[["support", "amplification"]].sort_values(["support", "amplification"])
+    names = list(reach.index)
+    widths = {"gridspec_kw": {"width_ratios": (2.6, 1)}}
+    fig, panels = style.axes(style.PAGE, ROW * len(names) + 1.4, 1, 2, **widths)
+    label = "largest movement over that of the keyframe"
+    shown.columns = [f"{int(offset):+d}" for offset in shown.columns]
+    log_heat(panels[0, 0], shown.loc[names], label, (1e-8, 1.0))
+    panels[0, 0].set(title="reach", xlabel="segment, from the keyframe")
+    ax = panels[0, 1]
+    ax.plot(reach["amplification"], range(len(names)), "k.", ms=5)
+    ax.set(title="amplification", xlabel="largest movement", ylim=(len(names) - 0.5, -0.5))
+    ax.set_yticks(range(len(names)), [])
+    style.letters(panels[0])
+    return fig
+
+
+def caption(table: pd.DataFrame) -> str:
+    return (
+        "(a) How far a turn of one keyframe moves the curve, on the segments to either side of it (60 degree steps, "
+        "uniform times), as a share of the turn; below 1e-8 lightest. Rows are sorted by the segments reached. "
+        "(b) The largest movement inside segments, over that of the keyframe: above 1 the change is amplified."
+    )

@@ -1,0 +1,56 @@
+"""Heat maps of schemes against columns, on a logarithmic scale, legible with dozens of rows."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import pandas as pd
+
+MISSING = "#dddddd"
+COLOURS = "viridis_r"
+"""Light is little, dark is much; even in grey print."""
+
+ROW = 0.17
+"""Inches a row: the least at which 7-point names do not touch."""
+
+
+def log_heat(
+    ax: Any,
+    frame: pd.DataFrame,
+    label: str,
+    limits: tuple[float, float],
+    *,
+    names_shown: bool = True,
+    colours: str = COLOURS,
+) -> None:
+    """Colour a frame of positive numbers, first row on top; grey where there is none.
+
+    Numbers outside the limits take the colour of the nearer one, which the colour bar marks.
+    """
+    low, high = limits
+    values = np.ma.masked_invalid(frame.to_numpy(dtype=float))
+    shades = mpl.colormaps[colours].with_extremes(bad=MISSING)
+    norm = mpl.colors.LogNorm(low, high, clip=True)
+    image = ax.imshow(np.ma.clip(values, low, high), cmap=shades, norm=norm, aspect="auto")
+    _label(ax, frame, names_shown)
+    bar = ax.figure.colorbar(image, ax=ax, orientation="horizontal", aspect=40, extend="both")
+    bar.set_label(label)
+
+
+def label_cells(ax: Any, texts: pd.DataFrame, dark: pd.DataFrame) -> None:
+    """Write into a map's cells, white where they are dark."""
+    for i, row in enumerate(texts.to_numpy()):
+        for j, text in enumerate(row):
+            colour = "white" if dark.iat[i, j] else "black"
+            ax.text(j, i, text, ha="center", va="center", fontsize=5.5, color=colour)
+
+
+def _label(ax: Any, frame: pd.DataFrame, names_shown: bool) -> None:
+    ax.set_xticks(range(frame.shape[1]), [str(column) for column in frame.columns])
+    ax.set_yticks(range(len(frame)), list(frame.index) if names_shown else [])
+    ax.tick_params(length=0)
+    ax.grid(visible=False)
+    for i in range(1, len(frame)):
+        ax.axhline(i - 0.5, color="white", lw=0.6)

@@ -1,0 +1,98 @@
+"""The pack of edge cases, and its verdicts on schemes whose answer is known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from quatspline import quaternion
+from quatspline.instruments import edges
+from quatspline.instruments.edges import SAMPLES, edge_result
+from quatspline.trajectories.edges import BASE, edge_cases
+from toys import Toy
+
+CASES = edge_cases()
+ASKED = (
+    *("equal keys", "antipodes", "near half-turn", "sign-flipped", "tiny rotations"),
+    *("extreme uneven times", "two keys", "closed full turn"),
+)
+
+
+def test_the_pack_holds_what_it_should():
+    assert set(ASKED) <= set(CASES)
+    assert all(name == case.name and case.difficulty for name, case in CASES.items())
+    assert np.linalg.norm(BASE) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("case", CASES.values(), ids=list(CASES))
+def test_keyframes_lie_on_the_truth(case):
+    keys = case.keyframes
+    np.testing.assert_allclose(np.linalg.norm(keys, axis=1), 1.0, atol=1e-14)
+    assert len(case.times) == len(keys) + case.closed
+    if case.truth is not None:
+        assert quaternion.distance(case.truth(case.times[: len(keys)]), keys).max() < 1e-12
+    if case.closed:
+        np.testing.assert_allclose(case.truth(case.times[-1:]), -keys[:1], atol=1e-14)
+
+
+@pytest.mark.parametrize("case", CASES.values(), ids=list(CASES))
+def test_slerp_is_exact(case):
+    row = edge_result(case, "slerp")
+    assert row["result"] == "exact", row
+    assert row["checked"] == ("keys" if case.truth is None else "truth")
+
+
+def test_nlerp_is_wrong_by_its_closed_form():
+    """Two keys a rad apart: the chord's point at u is at atan2(u sin h, 1 - u + u cos h), h = 1/2."""
+    u, half = np.arange(SAMPLES) / SAMPLES, 0.5
+    angle = 2.0 * np.arctan2(u * np.sin(half), 1.0 - u + u * np.cos(half))
+    row = edge_result(CASES["two keys"], "nlerp")
+    assert row["result"] == "wrong"
+    assert row["deviation"] == pytest.approx(np.abs(angle - u).max(), rel=1e-9)
+    assert row["relative"] == pytest.approx(row["deviation"], rel=1e-9)
+
+
+def test_a_refusal_is_an_error_with_its_reason():
+    row = edge_result(CASES["closed full turn"], "log-cubic")
+    assert row["result"] == "error"
+    assert "closed" in row["failure"]
+
+
+class _Hole(Toy):
+    """Slerp, but not a number in the last segment; or of norm 2; or off by 0.1 rad."""
+
+    def _orientation(self, t):
+        segment, u = self.located(t)
+        return self.spoilt(self.slerped(segment, u), segment)
+
+
+SPOILT = {
+    "NaN": lambda q, segment: np.where((segment == 2)[:, None], np.nan, q),
+    "wrong": lambda q, segment: quaternion.mul(q, quaternion.exp([0.05, 0.0, 0.0])),
+    "norm": lambda q, segment: 2.0 * q,
+}
+
+
+@pytest.mark.parametrize("fault", SPOILT)
+def test_faults_are_told_apart(monkeypatch, fault):
+    broken = type("_Broken", (_Hole,), {"spoilt": staticmethod(SPOILT[fault]), "name": "toy"})
+    monkeypatch.setattr(edges, "scheme", lambda name: broken)
+    row = edge_result(CASES["there and back"], "toy")
+    assert row["result"] == ("NaN" if fault == "NaN" else "wrong")
+    if fault == "wrong":
+        assert row["deviation"] == pytest.approx(0.1)
+    if fault == "norm":
+        assert row["failure"] == "norm is off 1 by 1"
+
+
+def test_rates_that_are_not_numbers_count(monkeypatch):
+    class Rates(Toy):
+        def _orientation(self, t):
+            return self.slerped(*self.located(t))
+
+        def _acceleration(self, t):
+            return np.full((len(t), 3), np.nan)
+
+    monkeypatch.setattr(edges, "scheme", lambda name: Rates)
+    row = edge_result(CASES["equal keys"], "toy")
+    assert (row["result"], row["failure"]) == ("NaN", "acceleration is not a number")

@@ -1,0 +1,112 @@
+"""The experiments that run an instrument over schemes: cells, tables and figures of a few of them."""
+
+from __future__ import annotations
+
+import json
+
+import pandas as pd
+import pytest
+
+from quatspline import running
+from quatspline.experiment import Run, found
+from quatspline.registry import load
+from quatspline.report import style
+from quatspline.report.results import Results
+
+SCHEMES = ["slerp", "squad", "shoemake-bezier"]
+"""One that is local, one with neighbours, and one that refuses uneven times."""
+
+COLUMNS = {
+    "accuracy": {"knots", "keyframes", "slope", "slope_alpha", "spacing_0.1deg", "unreached"},
+    "continuity": {
+        "case",
+        "order",
+        "quantity",
+        "jump",
+        "measured_k",
+        "claimed_k",
+        "least_key_speed",
+    },
+    "edge-cases": {"case", "result", "checked", "deviation", "failure"},
+    "fairness": {
+        "data",
+        "sets",
+        "median",
+        "jerk_median",
+        "length_median",
+        "peak_median",
+        "failure",
+    },
+    "invariance": {"property", "deviation", "relative", "invariant"},
+    "locality": {"offset", "response", "amplification", "support", "decay", "agrees"},
+    "noise": {"error", "gain", "gain_omega", "gain_alpha"},
+}
+
+
+@pytest.fixture(scope="module", params=list(COLUMNS))
+def measured(request, tmp_path_factory):
+    """An experiment, its cells, and its table as read back from the file."""
+    name = request.param
+    module = load(found()[name], "experiment")
+    run = Run(quick=True, schemes=SCHEMES)
+    cells = module.cells(run)
+    rows = [row for cell in cells for row in _rows(module, run, cell)]
+    table = pd.DataFrame(rows)
+    table = module.gather(run, table) if hasattr(module, "gather") else table
+    results = Results(tmp_path_factory.mktemp(name))
+    return name, module, cells, results.table(name, table, keys=module.KEYS)
+
+
+def _rows(module, run, cell):
+    """Through JSON, as a worker's are."""
+    return json.loads(json.dumps(module.measure_cell(run, **cell)))
+
+
+def test_cells_are_distinct_and_travel(measured):
+    _, _, cells, _ = measured
+    keys = [json.dumps(cell, sort_keys=True) for cell in cells]
+    assert len(set(keys)) == len(keys)
+    assert [json.loads(key) for key in keys] == cells
+
+
+def test_tables_have_their_columns_and_schemes(measured):
+    name, module, _, table = measured
+    assert COLUMNS[name] <= set(table.columns)
+    assert set(SCHEMES) <= set(table["scheme"])
+    assert set(module.FORMATS) <= set(table.columns)
+
+
+def test_a_scheme_that_does_not_apply_is_a_row_with_its_reason(measured):
+    name, _, _, table = measured
+    rows = table[table["scheme"] == "shoemake-bezier"]
+    if name in ("invariance", "locality"):  # it is given uniform times there
+        assert "failure" not in table or rows["failure"].isna().all()
+    else:
+        assert rows["failure"].str.contains("uniform times only").any()
+
+
+def test_figures_are_drawn_from_the_table(measured):
+    _, module, _, table = measured
+    with style.house():
+        figure = module.draw(table)
+    assert figure.axes
+    assert all(len(line) > 40 for line in [module.caption(table), module.NOTE])
+
+
+def test_a_cell_gives_the_same_rows_again(measured):
+    _, module, cells, _ = measured
+    run = Run(quick=True, schemes=SCHEMES)
+    assert json.dumps(_rows(module, run, cells[0])) == json.dumps(_rows(module, run, cells[0]))
+
+
+def test_where_nothing_can_be_measured_there_is_a_table_of_reasons(tmp_path, monkeypatch):
+    module = load(found()["noise"], "experiment")
+
+    def broken(name):
+        raise TypeError(f"{name} has no such option")
+
+    monkeypatch.setattr(module, "builder", broken)
+    assert running.run(["noise"], schemes=["slerp"], size="quick", out=tmp_path, jobs=1) == []
+    table = Results(tmp_path).read_table("noise")
+    assert set(table["failure"]) == {"TypeError: slerp has no such option"}
+    assert not (tmp_path / "noise.png").exists()
