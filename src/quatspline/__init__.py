@@ -10,6 +10,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from quatspline.comparing import compare
     from quatspline.curve import ConvergenceError, Curve, SolveReport
     from quatspline.keyframes import Keyframes
     from quatspline.registry import build, scheme, schemes
@@ -24,6 +25,7 @@ _HOMES = {
     "Keyframes": "quatspline.keyframes",
     "QuarticSpline": "quatspline.schemes.quartic",
     "build": "quatspline.registry",
+    "compare": "quatspline.comparing",
     "scheme": "quatspline.registry",
     "schemes": "quatspline.registry",
 }
@@ -36,6 +38,7 @@ __all__ = [
     "SolveReport",
     "__version__",
     "build",
+    "compare",
     "scheme",
     "schemes",
 ]

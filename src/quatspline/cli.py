@@ -7,8 +7,6 @@ stderr; 130 interrupted.  Whatever is slow to import waits until a command needs
 from __future__ import annotations
 
 import argparse
-import importlib
-import importlib.util
 import math
 import os
 import sys
@@ -26,8 +24,6 @@ if TYPE_CHECKING:
 
 DONE, FAILED, REFUSED, INTERRUPTED = 0, 1, 2, 130
 
-COMPARE, PAGE = "quatspline.compare", "quatspline.report.page"
-"""Modules whose ``command`` serves `compare` and `report`."""
 
 MOST_SAMPLES = 50_000_000
 """More samples than this are a slip of the unit, and would not fit into memory."""
@@ -98,16 +94,10 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(metavar="COMMAND", required=True, dest="name")
     commands.add_parser("list", help="schemes and what they claim").set_defaults(call=_list)
     _add_run(commands)
-    if _exists(COMPARE):
-        _add_compare(commands)
+    _add_compare(commands)
     _add_sample(commands)
-    if _exists(PAGE):
-        _add_report(commands)
+    _add_report(commands)
     return parser
-
-
-def _exists(module: str) -> bool:
-    return importlib.util.find_spec(module) is not None
 
 
 def _add_run(commands: Any) -> None:
@@ -134,7 +124,8 @@ def _add_compare(commands: Any) -> None:
     compare = commands.add_parser("compare", help="schemes on your own keyframes")
     _add_keyframes(compare)
     _add_schemes(compare)
-    compare.add_argument("--out", type=Path, metavar="DIR", help="for the table and the figures")
+    where = "for tables, figures and the page; by default KEYFRAMES-compared here"
+    compare.add_argument("--out", type=Path, metavar="DIR", help=where)
     compare.set_defaults(call=_compare)
 
 
@@ -248,14 +239,20 @@ def _run(arguments: argparse.Namespace) -> int:
 
 
 def _compare(arguments: argparse.Namespace) -> int:
+    from quatspline import comparing
+
+    schemes = _schemes(arguments)  # a wrong name is told before a long file is read
     motion = _motion(arguments)
-    command = importlib.import_module(COMPARE).command
-    schemes = _schemes(arguments)
-    return command(motion, schemes=schemes, closed=arguments.closed, out=arguments.out)
+    out = arguments.out or Path(f"{Path(arguments.keyframes).stem}-compared")
+    return comparing.command(
+        motion, schemes=schemes, closed=arguments.closed, out=out, call=arguments.command
+    )
 
 
 def _report(arguments: argparse.Namespace) -> int:
-    return importlib.import_module(PAGE).command(arguments.out, open_it=arguments.open)
+    from quatspline.report import page
+
+    return page.command(arguments.out, open_it=arguments.open)
 
 
 def _sample(arguments: argparse.Namespace) -> int:

@@ -6,6 +6,7 @@ import webbrowser
 from collections.abc import Sequence
 from pathlib import Path
 
+from quatspline.report.findings import Finding
 from quatspline.report.page.document import document
 from quatspline.report.page.folder import Folder
 from quatspline.report.page.motion import Scene, own_scene, paper_scenes
@@ -38,6 +39,7 @@ def write_page(
     title: str = TITLE,
     scenes: Sequence[Scene] | None = None,
     sections: Sequence[Section] = SECTIONS,
+    findings: Sequence[Finding] | None = None,
 ) -> Path:
     """Write ``report.html`` into a folder of tables and enter it in the manifest there.
 
@@ -47,6 +49,7 @@ def write_page(
     title : the page's heading
     scenes : motions for the player, by default the paper's two cases; see `own_scene`
     sections : what the page shows, in order; tables that none names come last
+    findings : the sentences at the top, by default those that the tables support
 
     Raises
     ------
@@ -56,7 +59,9 @@ def write_page(
     found = Folder(Path(folder))
     results = Results(folder)
     shown = paper_scenes() if scenes is None else scenes
-    path = results.text(PAGE, document(found, title=title, scenes=shown, parts=sections))
+    path = results.text(
+        PAGE, document(found, title=title, scenes=shown, parts=sections, said=findings)
+    )
     if (results.folder / MANIFEST).is_file():
         results.refresh()
     return path

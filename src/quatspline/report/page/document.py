@@ -28,13 +28,22 @@ SCRIPTS = (
 )
 """Scripts in the order that they are run."""
 
-TOPICS = {"reproduction": "What reproduces", "protocol": "What is protocol"}
+TOPICS = {
+    "reproduction": "What reproduces",
+    "protocol": "What is protocol",
+    "recommendation": "Recommendation",
+}
 ADDED = "What the measurements add"
 """Headings of the findings; every further topic is under the last."""
 
 
 def document(
-    folder: Folder, *, title: str, scenes: Sequence[Scene], parts: Sequence[Section]
+    folder: Folder,
+    *,
+    title: str,
+    scenes: Sequence[Scene],
+    parts: Sequence[Section],
+    said: Sequence[Finding] | None = None,
 ) -> str:
     """The whole page as text: the same for the same folder."""
     sampled = [player_data(scene) for scene in scenes]
@@ -43,7 +52,7 @@ def document(
     context = {
         "title": title,
         "version": __version__,
-        "findings": _grouped(findings(folder.frame)),
+        "findings": _grouped(findings(folder.frame) if said is None else said),
         "sections": [section for section in shown if section],
         "manifest": folder.manifest,
         "failures": folder.failures,
@@ -113,7 +122,7 @@ def _data_uri(svg: str) -> str:
 # -- findings -----------------------------------------------------------------------------------
 
 
-def _grouped(found: list[Finding]) -> list[tuple[str, list[Finding]]]:
+def _grouped(found: Sequence[Finding]) -> list[tuple[str, list[Finding]]]:
     """Findings under their headings, in order."""
     groups: dict[str, list[Finding]] = {}
     for finding in found:

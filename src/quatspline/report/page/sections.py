@@ -49,6 +49,11 @@ RANKINGS: dict[str, Ranking] = {
         "the median over the keyframe sets of the torque energy over the least possible; less is better",
         {"data": "committed"},
     ),
+    "compare": Ranking(
+        "torque_over_least",
+        False,
+        "torque energy over the least of all schemes compared; less is better",
+    ),
 }
 
 SECTIONS: tuple[Section, ...] = (
@@ -189,3 +194,25 @@ SECTIONS: tuple[Section, ...] = (
 
 OTHER = Section("other", "Further measurements")
 """Tables of the folder that no section names."""
+
+_BLOCKS = {section.key: section for section in SECTIONS}
+
+OWN: tuple[Section, ...] = (
+    Section(
+        "compare",
+        "Schemes compared",
+        "One row a scheme on these keyframes. Sort by any column: the line above the table states the criterion.",
+        ("compare",),
+        (
+            Plot(
+                "compare",
+                ("seconds_per_sample", "seconds_set_up"),
+                ("torque_over_least", "jerk_over_least", "peak_over_least"),
+                "points",
+                log=(True, True),
+            ),
+        ),
+    ),
+    *(_BLOCKS[key] for key in ("player", "log-curves", "rates")),
+)
+"""The sections of a page for somebody's own keyframes."""

@@ -1,0 +1,269 @@
+"""Compare schemes on somebody's own keyframes: one table, figures, a recommendation and a page."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from quatspline import keyframes as kf
+from quatspline import quaternion
+from quatspline.curve import Curve
+from quatspline.experiment import Run
+from quatspline.instruments.continuity import jumps, measured_continuity, speeds
+from quatspline.instruments.fairness import fairness
+from quatspline.instruments.speed import repeated
+from quatspline.instruments.timing import interleaved
+from quatspline.instruments.trials import Row, attempted, facts
+from quatspline.keyframes import Keyframes
+from quatspline.options import declared
+from quatspline.registry import scheme, schemes
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from quatspline.trajectories.files import Motion
+
+TOLERANCE = 1e-9
+"""Of iterative schemes, in rad."""
+
+PROBES, CALLS = 40, 400
+"""Samples that foretell what instruments cost a scheme, which take about CALLS of them a segment."""
+MANY = 300
+"""Keyframes from which a set-up is foretold."""
+BUDGET = 3.0
+"""Seconds that a scheme may take of a comparison unless it is asked for by name."""
+
+ROUNDS, LEAST, SLOW = 5, 2e-3, 0.02
+"""Of the timings: rounds, seconds a measurement, and the seconds from which one call is enough."""
+
+ENERGIES = ("torque", "jerk", "peak")
+TITLE = "Comparison on your keyframes"
+NOTE = (
+    "continuity is k of C^k as measured on these keyframes; misses the largest angle at a keyframe (rad); torque the "
+    "integral of |alpha|^2, jerk that of |alpha'|^2, peak the largest |alpha|, infinite where the velocity jumps, each "
+    "also over the least here; key_speed the least speed at an inner keyframe, peak_speed the largest, over the mean. "
+    "Iterative schemes solve to 1e-9. Compare seconds within this table only."
+)
+BARS = "Torque energy over the least of all schemes compared; hollow: not C2 as measured here.\n"
+RATES = "Norms of the angular velocity and acceleration over time; grey lines are keyframes.\n"
+FORMATS = {
+    "misses": ".1e",
+    **{f"{name}_over_least": ".4f" for name in ENERGIES},
+    "seconds_set_up": ".2e",
+    "seconds_per_sample": ".2e",
+}
+
+
+def compare(
+    times: ArrayLike | None,
+    quaternions: Any,
+    schemes: Sequence[str] | None = None,
+    *,
+    closed: bool = False,
+) -> pd.DataFrame:
+    """Measure schemes on keyframes: one row a scheme, what does not apply or fails with its reason.
+
+    Parameters
+    ----------
+    times, quaternions, closed : a single track, as `quatspline.build` takes it
+    schemes : names, by default all; those that would take long are then left out with a reason
+
+    Returns
+    -------
+    DataFrame with the columns scheme, continuity, misses, torque, jerk, peak, length (rad), the first
+    three over the least here, key_speed, peak_speed, support, iterations, rates, version, failure and
+    the timings seconds_set_up and seconds_per_sample; sorted by torque, failures last.
+
+    Raises
+    ------
+    ValueError
+        On bad keyframes, an unknown scheme, or several tracks.
+    """
+    keyframes = kf.prepare(times, quaternions, closed=closed)
+    return _compared(keyframes, schemes)
+
+
+def _compared(keyframes: Keyframes, named: Sequence[str] | None) -> pd.DataFrame:
+    import pandas as pd
+
+    if keyframes.track_shape:
+        raise ValueError(f"quaternions has {keyframes.track_shape} tracks: compare takes one")
+    names = schemes() if named is None else [scheme(name).name for name in named]
+    rows: list[Row] = []
+    curves: dict[str, Curve] = {}
+    for name in Run(quick=True).progress(names, label="compare"):
+        measure = partial(_measured, name, keyframes, curves, thrifty=named is None)
+        rows.append({"scheme": name} | attempted(measure)[0])
+    table = pd.DataFrame(rows).reindex(columns=COLUMNS)
+    for name, seconds in _timed(keyframes, curves).items():
+        table.loc[table["scheme"] == name, list(seconds)] = list(seconds.values())
+    for name in ENERGIES:
+        table[f"{name}_over_least"] = table[name] / table[name].min()
+    return table.sort_values(["torque", "scheme"], na_position="last", ignore_index=True)
+
+
+COLUMNS = [
+    *("scheme", "continuity", "misses"),
+    *(f"{name}_over_least" for name in ENERGIES),
+    *("key_speed", "peak_speed", *ENERGIES, "length"),
+    *(
+        "support",
+        "iterations",
+        "rates",
+        "version",
+        "seconds_set_up",
+        "seconds_per_sample",
+        "failure",
+    ),
+]
+
+
+def _built(name: str, keyframes: Keyframes) -> Curve:
+    cls = scheme(name)
+    given = {"tolerance": TOLERANCE} if "tolerance" in declared(cls._fit) else {}
+    return cls.from_keyframes(keyframes, **given)
+
+
+def _measured(
+    name: str, keyframes: Keyframes, curves: dict[str, Curve], thrifty: bool
+) -> list[Row]:
+    """The row of one scheme; its curve is kept for the timings."""
+    if thrifty:
+        _afford_set_up(name, keyframes)
+    curve = _built(name, keyframes)
+    if thrifty:
+        _afford_samples(curve)
+    smooth = measured_continuity(jumps(curve))
+    fair = fairness(curve)
+    if smooth < 1:  # a jump of the velocity is an infinite torque, which no quadrature sees
+        fair |= dict.fromkeys(ENERGIES, np.inf)
+    pace, report = speeds(curve), curve.solve_report
+    curves[name] = curve
+    row = {
+        "continuity": smooth,
+        "misses": _misses(curve),
+        **fair,
+        "key_speed": pace["least_key_speed"],
+        "peak_speed": pace["peak_speed"],
+        "support": "all" if curve.support is None else str(curve.support),
+        "iterations": report.iterations if report else None,
+        **facts(curve),
+    }
+    return [row]
+
+
+def _afford_set_up(name: str, keyframes: Keyframes) -> None:
+    """Refuse a scheme whose set-up would take longer than the budget: it may grow with the square."""
+    limit, count = scheme(name).practical_keyframes, keyframes.count
+    if limit is not None and count > limit:
+        raise ValueError(f"over budget beyond {limit} keyframes; ask for it by name")
+    if count > MANY:
+        start = time.perf_counter()
+        _built(name, kf.prepare(keyframes.times[:MANY], keyframes.quaternions[:MANY]))
+        _refuse_beyond_budget((time.perf_counter() - start) * (count / MANY) ** 2)
+
+
+def _afford_samples(curve: Curve) -> None:
+    """Refuse a curve whose samples would take longer than the budget."""
+    probe = np.linspace(*curve.domain, PROBES)
+    curve(probe)
+    start = time.perf_counter()
+    curve(probe)
+    each = (time.perf_counter() - start) / PROBES
+    _refuse_beyond_budget(each * CALLS * curve.keyframes.spacings.size)
+
+
+def _refuse_beyond_budget(seconds: float) -> None:
+    if seconds > BUDGET:
+        raise ValueError(f"over budget: might take {seconds:.0f} s; ask for it by name")
+
+
+def _misses(curve: Curve) -> float:
+    """The largest angle at a keyframe, rad."""
+    at = curve.times[: curve.keyframes.count]
+    return float(quaternion.distance(curve(at), curve.keyframes.quaternions).max())
+
+
+def _timed(keyframes: Keyframes, curves: dict[str, Curve]) -> dict[str, dict[str, float]]:
+    """Seconds of set-up and of a sample, interleaved; slow calls are timed once."""
+    t = np.linspace(*next(iter(curves.values())).domain, 1000) if curves else np.empty(0)
+    calls: dict[tuple[str, str], Callable[[], object]] = {}
+    for name, curve in curves.items():
+        calls[name, "seconds_set_up"] = partial(_built, name, keyframes)
+        calls[name, "seconds_per_sample"] = partial(curve, t)
+    once = {key: _elapsed(call) for key, call in calls.items()}
+    quick = {"\t".join(key): repeated(calls[key]) for key, s in once.items() if s < SLOW}
+    for joined, timing in interleaved(quick, ROUNDS, least=LEAST).items():
+        name, column = joined.split("\t")
+        once[name, column] = timing.median
+    scale = {"seconds_set_up": 1.0, "seconds_per_sample": max(t.size, 1)}
+    return {
+        name: {column: once[name, column] / size for column, size in scale.items()}
+        for name in curves
+    }
+
+
+def _elapsed(call: Callable[[], object]) -> float:
+    call()
+    start = time.perf_counter()
+    call()
+    return time.perf_counter() - start
+
+
+# -- the command ---------------------------------------------------------------------------------
+
+
+def command(
+    motion: Motion,
+    *,
+    schemes: Sequence[str] | None,
+    closed: bool,
+    out: Path,
+    call: Sequence[str] = (),
+) -> int:
+    """Serve ``quatspline compare``: tables, figures, the recommendation and the page in a folder.
+
+    Raises
+    ------
+    ValueError
+        On bad keyframes, an unknown scheme, or a folder that cannot be made.
+    """
+    import matplotlib as mpl
+
+    from quatspline.report import advice, style
+    from quatspline.report.page import own_scene, write_page
+    from quatspline.report.page.sections import OWN
+    from quatspline.report.results import Results
+
+    mpl.use("Agg")  # nothing here may open a window
+
+    began = time.perf_counter()
+    keyframes = kf.prepare(motion.times, motion.quaternions, closed=closed)
+    results = Results(out)
+    results.begin(call, schemes=list(schemes) if schemes is not None else None)
+    table = _compared(keyframes, schemes)
+    table = results.table("compare", table, title=TITLE, note=NOTE, formats=FORMATS, keys=[])
+    found = advice.recommendation(table)
+    results.text("recommendation.md", advice.markdown(found))
+    names = advice.shown(table)
+    with style.house():
+        results.figure("compare", advice.bars(table))
+        results.figure("rates", advice.rates(keyframes, names))
+    results.text("compare.caption.txt", BARS)
+    results.text("rates.caption.txt", RATES)
+    entry = {"title": TITLE, "size": f"{keyframes.count} keyframes", "seed": None}
+    results.record("compare", entry | {"seconds": round(time.perf_counter() - began, 3)})
+    results.finish()
+    scene = own_scene("own", "Your keyframes", keyframes, motion.positions, names)
+    page = write_page(out, title=TITLE, scenes=[scene], sections=OWN, findings=found)
+    for line in advice.lines(found):
+        print(line)
+    print(page, file=sys.stderr)
+    return 0

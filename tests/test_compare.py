@@ -1,0 +1,136 @@
+"""`qs.compare` and `quatspline compare`: the table, the recommendation, files, and hard keyframes."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import quatspline as qs
+from quatspline import cli, quaternion
+from quatspline.comparing import COLUMNS
+from quatspline.report import advice
+from quatspline.report.quotes import Quote
+from quatspline.trajectories.edges import edge_cases
+from quatspline.trajectories.files import Motion, write
+from walks import walk
+
+NAMES = ["quartic", "local-quintic", "squad", "slerp", "nielson", "min-torque"]
+
+
+@pytest.fixture(scope="module")
+def table() -> pd.DataFrame:
+    return qs.compare(None, walk(9, 50.0, seed=1), NAMES)
+
+
+def test_one_row_a_scheme_sorted_by_torque(table: pd.DataFrame) -> None:
+    assert list(table.columns) == COLUMNS
+    assert sorted(table["scheme"]) == sorted(NAMES)
+    assert table["failure"].isna().all()
+    assert table["torque"].is_monotonic_increasing
+    assert table["scheme"].iloc[0] == "min-torque"
+    k = table.set_index("scheme")["continuity"]
+    assert (k["quartic"], k["squad"], k["slerp"], k["nielson"]) == (2, 1, 0, 1)
+    assert np.isinf(table.set_index("scheme").loc["slerp", "torque"])
+    assert (table["misses"] < 1e-9).all()
+
+
+def test_a_constant_spin_costs_what_it_must() -> None:
+    """Keyframes of one constant rate: no torque, an arc of known length, even speed."""
+    q = quaternion.exp(np.outer(np.arange(6.0), [0.1, 0.2, 0.2]))  # 0.6 rad a keyframe
+    row = qs.compare(None, q, ["local-quintic"]).iloc[0]
+    assert row["length"] == pytest.approx(3.0, rel=1e-12)
+    assert row["torque"] < 1e-20
+    assert row["key_speed"] == pytest.approx(1.0)
+    assert row["peak_speed"] == pytest.approx(1.0)
+
+
+def test_closed_keyframes_and_what_does_not_apply() -> None:
+    found = qs.compare(np.arange(7.0), walk(6, 50.0, seed=2), ["quartic", "log-cubic"], closed=True)
+    assert found.set_index("scheme")["failure"].isna().to_dict() == {
+        "quartic": True,
+        "log-cubic": False,
+    }
+
+
+def test_bad_input_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"unknown scheme 'quartik'.*quartic"):
+        qs.compare(None, walk(5, 50.0, seed=1), ["quartik"])
+    with pytest.raises(ValueError, match="tracks"):
+        qs.compare(None, np.stack([walk(5, 50.0, seed=1)] * 2, axis=1), ["quartic"])
+    with pytest.raises(ValueError, match=r"quaternions\[1\]"):
+        qs.compare(None, [[1, 0, 0, 0], [2, 0, 0, 0]], ["quartic"])
+
+
+def test_every_number_of_the_recommendation_is_a_cell(table: pd.DataFrame) -> None:
+    found = advice.recommendation(table)
+    assert found[0].text.startswith("Take local-quintic: ")
+    quotes = [part for finding in found for part in finding.parts if isinstance(part, Quote)]
+    assert quotes
+    for quote in quotes:
+        for cell in quote.cells:
+            (row,) = table[table["scheme"] == cell.row["scheme"]].to_dict("records")
+            assert row[cell.column] == cell.value
+    for finding in found:
+        typed = "".join(part for part in finding.parts if isinstance(part, str))
+        assert not re.search(r"\d", typed.replace("C", "")), typed
+
+
+def test_stopping_at_keyframes_or_missing_them_is_not_recommended(table: pd.DataFrame) -> None:
+    spoilt = table.copy()
+    spoilt.loc[spoilt["scheme"] == "local-quintic", "key_speed"] = 0.0
+    assert "local-quintic" not in set(advice.candidates(spoilt)["scheme"])
+    spoilt = table.copy()
+    spoilt.loc[spoilt["scheme"] == "local-quintic", "misses"] = 0.1
+    assert "local-quintic" not in set(advice.candidates(spoilt)["scheme"])
+    nothing = table.assign(failure="refused")
+    assert advice.recommendation(nothing) == []
+    assert list(advice.lines([])) != []
+
+
+def test_command_writes_table_figures_advice_and_page(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    motion = Motion(
+        np.arange(7.0), walk(7, 60.0, seed=3), np.random.default_rng(0).normal(size=(7, 3))
+    )
+    keyframes, out = tmp_path / "keys.tum", tmp_path / "out"
+    write(keyframes, motion)
+    status = cli.main(["compare", str(keyframes), "--schemes", *NAMES, "--out", str(out)])
+    assert status == 0
+    assert capsys.readouterr().out.startswith("Take ")
+    names = {path.name for path in out.iterdir()}
+    assert {"compare.csv", "compare.md", "compare.svg", "rates.svg", "recommendation.md"} <= names
+    assert {"report.html", "manifest.json"} <= names
+    files = json.loads((out / "manifest.json").read_text())["files"]
+    assert "report.html" in files
+    assert "Take local-quintic" in (out / "report.html").read_text()
+
+
+@pytest.mark.parametrize("case", edge_cases())
+def test_the_edge_pack_never_shows_a_traceback(
+    case: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    edge = edge_cases()[case]
+    keyframes = tmp_path / "keys.npz"
+    np.savez(keyframes, times=edge.times, quaternions=edge.keyframes)
+    closed = ["--closed"] if edge.closed else []
+    arguments = [
+        "compare",
+        str(keyframes),
+        "--schemes",
+        "quartic",
+        "local-quintic",
+        "nielson",
+        *closed,
+    ]
+    status = cli.main([*arguments, "--out", str(tmp_path / "out")])
+    told = capsys.readouterr()
+    assert "Traceback" not in told.err
+    assert status in (0, 2)
+    if status == 2:
+        assert len(told.err.strip().splitlines()) == 1
