@@ -38,7 +38,7 @@ def cells(run: Run) -> list[dict[str, str]]:
 def measure_cell(run: Run, task: str) -> list[dict[str, object]]:
     rounds = ROUNDS["quick" if run.quick else "full"]
     if task == START:
-        return _starts(rounds)
+        return _starts(rounds, run.quick)
     chosen = next(t for t in tasks(run.rng("speed"), run.quick) if t.name == task)
     names = run.schemes or [name for name, item in found().items() if item.scheme is not None]
     return _rows(chosen, run, names, rounds if chosen.keyframes < 1e6 else 3)
@@ -72,9 +72,9 @@ def _rows(task: Task, run: Run, names: list[str], rounds: int) -> list[dict[str,
     return rows
 
 
-def _starts(rounds: int) -> list[dict[str, object]]:
+def _starts(rounds: int, quick: bool) -> list[dict[str, object]]:
     rows: list[dict[str, object]] = []
-    for name, seconds in starts(min(rounds, 5)):
+    for name, seconds in starts(min(rounds, 5), quick):
         low, middle, high = np.percentile(seconds, [25, 50, 75])
         base: dict[str, object] = {
             "task": START,

@@ -49,18 +49,13 @@ def _compiled(
         segments,
         report,
     )
-    evaluate = (
-        curve.kernels[0].address,
-        described(curve.segment_knots, segments, k.signs, k.closed),
-        k.times[0],
-        curve._slack,
-        t,
-        out.reshape(-1),
-    )
+    places = described(curve.segment_knots, segments, k.signs, k.closed)
     loop = _per_frame if protocol == "per-frame" else _solve_once
 
     def generate(repeats: int) -> FloatArray:
-        loop(repeats, *fit, *evaluate)
+        # The curve is named here so that the arrays whose addresses are in `places` live on.
+        kernel, origin, slack = curve.kernels[0].address, k.times[0], curve._slack
+        loop(repeats, *fit, kernel, places, origin, slack, t, out.reshape(-1))
         return out[:, 0]
 
     return generate

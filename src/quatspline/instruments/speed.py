@@ -268,10 +268,13 @@ print(time.perf_counter() - start)
 """
 
 
-def starts(rounds: int) -> Iterator[tuple[str, list[float]]]:
-    """Seconds in new processes: the import, and a first curve and sample from cached code and not."""
+def starts(rounds: int, quick: bool) -> Iterator[tuple[str, list[float]]]:
+    """Seconds in new processes: the import; a first curve and sample from cached code, in full size also
+    compiling it."""
     yield "import quatspline", [_seconds(_IMPORT) for _ in range(rounds)]
     yield "first sample, code cached", [_seconds(_FIRST) for _ in range(rounds)]
+    if quick:
+        return
     with tempfile.TemporaryDirectory(prefix="quatspline-") as folder:
         yield "first sample, compiling", [_seconds(_FIRST, QUATSPLINE_CACHE=folder)]
 
