@@ -27,7 +27,7 @@ FORMATS = {
     "times_fill": ".3g",
     "times_sincos": ".3g",
 }
-ROUNDS = {"quick": 3, "full": 15}
+ROUNDS = {"quick": 3, "full": 9}
 START = "start"
 
 
