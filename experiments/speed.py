@@ -29,6 +29,8 @@ FORMATS = {
 }
 ROUNDS = {"quick": 3, "full": 9}
 START = "start"
+MANY = 1_000_000
+"""Keyframes from which one round is enough: calls last seconds."""
 
 
 def cells(run: Run) -> list[dict[str, str]]:
@@ -41,7 +43,7 @@ def measure_cell(run: Run, task: str) -> list[dict[str, object]]:
         return _starts(rounds, run.quick)
     chosen = next(t for t in tasks(run.rng("speed"), run.quick) if t.name == task)
     names = run.schemes or [name for name, item in found().items() if item.scheme is not None]
-    return _rows(chosen, run, names, rounds if chosen.keyframes < 1e6 else 3)
+    return _rows(chosen, run, names, rounds if chosen.keyframes < MANY else 1)
 
 
 def _rows(task: Task, run: Run, names: list[str], rounds: int) -> list[dict[str, object]]:
