@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from quatspline.instruments.blending import blending
 from quatspline.registry import scheme
-from quatspline.report import style
+from quatspline.report.blending import draw_blending
 from quatspline.running import Run
 
 TITLE = "Figure 2: cumulative blending functions of the quartic"
@@ -18,13 +18,7 @@ def measure(run: Run) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    fig, panels = style.axes(style.COLUMN, 2.5)
-    ax = panels[0, 0]
-    for j, color in enumerate(style.PALETTE[:4]):
-        ax.plot(table["u"], table[f"B{j}"], color=color, label=rf"$\tilde B_{j}(u)$")
-    ax.set(xlabel="$u$", ylabel="cumulative blending function", xlim=(0, 1))
-    style.legend_of(fig, ax, 4)
-    return fig
+    return draw_blending(table, r"\tilde B", "cumulative blending function")
 
 
 def caption(table: pd.DataFrame) -> str:

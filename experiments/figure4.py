@@ -3,7 +3,7 @@
 import pandas as pd
 from matplotlib.figure import Figure
 
-from quatspline.report.motions import four_panels, motion_table
+from quatspline.report.motions import caption_of, four_panels, motion_table
 from quatspline.running import Run
 from quatspline.trajectories.paper import RECONSTRUCTED, TEAPOT
 
@@ -23,9 +23,4 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def caption(table: pd.DataFrame) -> str:
-    frames = int(((table.panel == "frames") & (table.scheme == "quartic")).sum())
-    return (
-        f"{TEAPOT.title}. (a) Keyframes; (b) {frames} frames by the quartic; (c) {frames} frames by the "
-        "cubic B-spline of Nielson, frames at keyframes in full colour; (d) the log-curves ln q(t) in "
-        f"R^3, quartic red, B-spline blue, keyframes marked. {RECONSTRUCTED}"
-    )
+    return caption_of(TEAPOT, table)

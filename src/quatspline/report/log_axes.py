@@ -44,7 +44,14 @@ def draw_log_curves(
         ax.plot([x, x], [y, y], [floor, z], color=_GRID, lw=0.6, zorder=2)
     style = {"marker": "o", "ls": "none", "mfc": "white", "mec": "black", "mew": 0.9, "ms": 4.0}
     ax.plot(*keys.T, label="keyframes", zorder=4, **style)
-    ax.legend(loc="upper left", bbox_to_anchor=(0.0, 1.0))
+    # above the box, in rows of three: nothing of the grid runs through it
+    ax.legend(
+        loc="upper center",
+        bbox_to_anchor=(0.5, 1.0),
+        ncols=3,
+        handlelength=1.4,
+        columnspacing=1.0,
+    )
 
 
 def _log_axes(ax: Axes3D, points: FloatArray, elev: float, azim: float) -> None:

@@ -17,7 +17,7 @@ from quatspline.report import style
 from quatspline.report.log_axes import draw_log_curves
 from quatspline.report.scenes import BRASS, PORCELAIN, draw_frames
 from quatspline.report.shapes import Mesh, key_mesh, teapot_mesh
-from quatspline.trajectories.paper import SOLVE, PaperCase
+from quatspline.trajectories.paper import RECONSTRUCTED, SOLVE, PaperCase
 
 LOG_SAMPLES = 601
 ORIENTATION = ["qw", "qx", "qy", "qz"]
@@ -90,8 +90,21 @@ def four_panels(case: PaperCase, table: pd.DataFrame) -> Figure:
         _scene(fig, case, rows, key_frames, box)
         _label(fig, box, f"({letter}) {label}")
     _logs(fig, table, key_frames, boxes[3])
-    _label(fig, boxes[3], "(d) ln q(t), half rotation vectors in rad")
+    _label(fig, boxes[3], r"(d) $\ln\,q(t)$, half rotation vectors in rad")
     return fig
+
+
+def caption_of(case: PaperCase, table: pd.DataFrame) -> str:
+    """What `four_panels` shows, as text to be printed beside it."""
+    frames = int(((table.panel == "frames") & (table.scheme == "quartic")).sum())
+    further = [name for name in table.scheme[table.panel == "log"].unique() if name not in PAPER]
+    others = f", and {', '.join(further)}" if further else ""
+    return (
+        f"{case.title}. (a) Keyframes; (b) {frames} frames by the quartic; (c) {frames} frames by the "
+        "cubic B-spline of Nielson, frames at keyframes in full colour; (d) the log-curves ln q(t) in "
+        f"R^3, half rotation vectors in rad, quartic red, B-spline blue{others}, keyframes marked, with "
+        f"their projections on the floor. {RECONSTRUCTED}"
+    )
 
 
 PAPER = ("quartic", "nielson", "kim")
