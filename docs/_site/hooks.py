@@ -1,0 +1,124 @@
+"""What turns docs/ into pages: formulas as MathML, citations, links out of docs, two more pages.
+
+The sources stay plain Markdown that a repository's viewer renders.  Whatever cannot be resolved, a
+formula, a key of references.bib, a file, is a warning, which ends a strict build.
+"""
+
+from __future__ import annotations
+
+import html
+import re
+from pathlib import Path
+from typing import Any
+
+from latex2mathml.converter import convert
+from mkdocs.plugins import get_plugin_logger
+from mkdocs.structure.files import File, Files
+
+ROOT = Path(__file__).resolve().parents[2]
+REFERENCES, CHANGES = "references.md", "changelog.md"
+SHOWN = ("author", "year", "title", "journal", "booktitle", "volume", "pages", "note")
+"""Fields of an entry that its line prints, in this order."""
+
+# Code comes first in the alternation: a dollar or bracket inside it is none of ours.
+CODE = r"(?P<code>^ *```.*?^ *```$|`[^`\n]+`)"
+FORMULA = re.compile(CODE + r"|\$\$(?P<block>.+?)\$\$|\$(?P<inline>[^$]+?)\$", re.M | re.S)
+CITATION = re.compile(CODE + r"|\[(?P<keys>@[\w:]+(?:; *@[\w:]+)*)\]", re.M | re.S)
+LINK = re.compile(CODE + r"|\[(?P<text>[^\]]+)\]\((?P<target>\.\./[^)#]+)(?P<anchor>#[^)]*)?\)", re.M | re.S)
+TAG = re.compile(r"\\tag\{([^}]*)\}")
+ENTRY = re.compile(r"^@\w+\{(?P<key>\w+),\n(?P<body>.*?)^\}", re.M | re.S)
+FIELD = re.compile(r"^ *(\w+) *= *\{?(.*?)\}?,?$", re.M)
+
+log = get_plugin_logger("docs")
+formulas: dict[str, list[str]] = {}
+"""The MathML of each page, by its place, while Markdown is at work on the text around it."""
+
+
+def on_files(files: Files, config: Any) -> Files:
+    """Add the changelog, which stands at the root, and the references."""
+    files.append(File.generated(config, CHANGES, abs_src_path=str(ROOT / "CHANGELOG.md")))
+    files.append(File.generated(config, REFERENCES, content=_references()))
+    return files
+
+
+def on_page_markdown(text: str, page: Any, **_: Any) -> str:
+    """Resolve citations and links out of docs, and take formulas out of Markdown's way."""
+    place = page.file.src_uri
+    up = "../" * place.count("/")
+    text = CITATION.sub(lambda m: m["code"] or _cited(m["keys"], up, place), text)
+    text = LINK.sub(lambda m: m["code"] or _linked(m, place), text)
+    kept = formulas[place] = []
+
+    def keep(m: re.Match[str]) -> str:
+        if m["code"]:
+            return m["code"]
+        kept.append(_mathml(m["block"] or m["inline"], m["block"] is not None, place))
+        return f"MATHML{len(kept) - 1}X"
+
+    return FORMULA.sub(keep, text)
+
+
+def on_page_content(content: str, page: Any, **_: Any) -> str:
+    """Put the formulas back."""
+    kept = formulas.pop(page.file.src_uri)
+    return re.sub(r"MATHML(\d+)X", lambda m: kept[int(m[1])], content)
+
+
+def _mathml(source: str, block: bool, place: str) -> str:
+    tags = TAG.findall(source)
+    try:
+        made = convert(TAG.sub("", source).strip(), display="block" if block else "inline")
+    except Exception as error:  # of many kinds, by what is malformed
+        log.warning("%s: %s in the formula %r", place, error, source)
+        return html.escape(source)
+    if unknown := re.findall(r"\\[A-Za-z]+", made):
+        log.warning("%s: %s is not known in the formula %r", place, unknown[0], source)
+    if not block:
+        return str(made)
+    number = "".join(f'<span class="number" id="{t}">({t})</span>' for t in tags)
+    return f'<span class="equation">{made}{number}</span>'
+
+
+def _cited(keys: str, up: str, place: str) -> str:
+    known, links = _entries(), []
+    for key in re.findall(r"@([\w:]+)", keys):
+        if key not in known:
+            log.warning("%s cites %s, which references.bib does not have", place, key)
+        links.append(f"[{key}]({up}{REFERENCES}#{key})")
+    return f"({', '.join(links)})"
+
+
+def _linked(m: re.Match[str], place: str) -> str:
+    """A link that stays in docs; one that leads to a file of the checkout becomes its text."""
+    docs = ROOT / "docs"
+    target = ((docs / place).parent / m["target"]).resolve()
+    if target.is_relative_to(docs):
+        return m[0]
+    if target == ROOT / "CHANGELOG.md":
+        return f"[{m['text']}]({'../' * place.count('/')}{CHANGES})"
+    if not target.exists():
+        log.warning("%s links to %s, which does not exist", place, m["target"])
+    return m["text"]
+
+
+def _entries() -> dict[str, dict[str, str]]:
+    text = (ROOT / "references.bib").read_text(encoding="utf-8")
+    return {m["key"]: dict(FIELD.findall(m["body"])) for m in ENTRY.finditer(text)}
+
+
+def _references() -> str:
+    lines = ["# References", "", "The publications and programs that pages and docstrings cite, by key.", ""]
+    for key, fields in sorted(_entries().items()):
+        parts = [_plain(fields[name]) for name in SHOWN if name in fields]
+        if "doi" in fields:
+            parts.append(f"[doi:{fields['doi']}](https://doi.org/{fields['doi']})")
+        elif "url" in fields:
+            parts.append(f"<{fields['url']}>")
+        lines += [f'- <span id="{key}"></span>**{key}**: ' + ". ".join(parts)]
+    return "\n".join(lines) + "\n"
+
+
+def _plain(value: str) -> str:
+    r"""BibTeX's braces and escapes as text; formulas, such as {$C^2$}, stay."""
+    value = re.sub(r'\{?\\"\{?(\w)\}?\}?', lambda m: m[1] + "\u0308", value)
+    return re.sub(r"[{}]", "", value).replace(r"\&", "&").replace("--", "–")
