@@ -1,4 +1,4 @@
-"""Quote measurements in the README: ``python -m quatspline.report.readme [--adopt results]``.
+"""Quote measurements in the README and in docs: ``python -m quatspline.report.readme [--adopt results]``.
 
 Text between ``<!-- begin NAME -->`` and ``<!-- end NAME -->`` is generated from ``results/reference``; --adopt
 first takes the tables of a finished run as the new reference.
@@ -19,12 +19,43 @@ from quatspline.report.results import MANIFEST, read_json
 
 ROOT = PACKAGE.parents[1]
 REFERENCE = ROOT / "results" / "reference"
-PICTURES = ROOT / "docs" / "images"
+DOCS = ROOT / "docs"
+PICTURES = DOCS / "images"
+QUOTING = (ROOT / "README.md", DOCS / "index.md")
+"""Files with generated blocks."""
+
+TREATED = re.compile(r"^Schemes?: (.+)\.$", re.M)
+"""The line by which a page of docs/mathematics says which schemes it derives."""
 
 
 def findings_block() -> str:
     """The findings, from the reference tables."""
     return "\n".join(lines(REFERENCE))
+
+
+def derivations() -> dict[str, Path]:
+    """The page that derives a scheme, by the scheme's name."""
+    pages = {}
+    for page in sorted((DOCS / "mathematics").glob("*.md")):
+        for line in TREATED.findall(page.read_text(encoding="utf-8")):
+            pages.update(dict.fromkeys(re.findall(r"`([^`]+)`", line), page))
+    return pages
+
+
+def pages_block() -> str:
+    """Which page treats a scheme."""
+    pages, rows = derivations(), ["| scheme | what it is | page |", "| --- | --- | --- |"]
+    for name, item in found().items():
+        if item.scheme is None:
+            continue
+        page = DOCS / "peers.md" if item.scheme.peer else pages.get(name)
+        if page is None:
+            rows.append(f"| `{name}` | {item.scheme.title} | – |")
+            continue
+        title = page.read_text(encoding="utf-8").partition("\n")[0].removeprefix("# ")
+        link = f"[{title}]({page.relative_to(DOCS).as_posix()})"
+        rows.append(f"| `{name}` | {item.scheme.title} | {link} |")
+    return "\n".join(rows)
 
 
 def schemes_block() -> str:
@@ -33,7 +64,7 @@ def schemes_block() -> str:
         "| scheme | what it is | C^k | order | shaped by | from |",
         "| --- | --- | ---: | ---: | --- | --- |",
     ]
-    rows = []
+    rows, pages = [], derivations()
     for name, item in found().items():
         s = item.scheme
         if s is None:
@@ -41,7 +72,9 @@ def schemes_block() -> str:
             continue
         support = "all keyframes" if s.support is None else f"{s.support} keyframes"
         origin = s.peer or "quatspline"
-        rows.append(f"| `{name}` | {s.title} | {s.continuity} | {s.order} | {support} | {origin} |")
+        link = pages.get(name)
+        shown = f"[`{name}`]({link.relative_to(ROOT).as_posix()})" if link else f"`{name}`"
+        rows.append(f"| {shown} | {s.title} | {s.continuity} | {s.order} | {support} | {origin} |")
     return "\n".join(head + rows)
 
 
@@ -59,11 +92,12 @@ BLOCKS: dict[str, Callable[[], str]] = {
     "findings": findings_block,
     "speed": speed_block,
     "schemes": schemes_block,
+    "pages": pages_block,
 }
 
 
 def renewed(text: str) -> str:
-    """The README's text with every generated block written anew."""
+    """A file's text with every generated block written anew."""
     for name, block in BLOCKS.items():
         begin, end = f"<!-- begin {name} -->\n", f"<!-- end {name} -->"
         if begin in text:
@@ -88,8 +122,8 @@ def main() -> None:
     arguments = parser.parse_args()
     if arguments.adopt:
         adopt(arguments.adopt)
-    readme = ROOT / "README.md"
-    readme.write_text(renewed(readme.read_text(encoding="utf-8")), encoding="utf-8")
+    for file in QUOTING:
+        file.write_text(renewed(file.read_text(encoding="utf-8")), encoding="utf-8")
 
 
 if __name__ == "__main__":
