@@ -9,7 +9,7 @@ NAME ?=
 TASK ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help reproduce benchmark benchmark-speed report test lint format new-baseline check-baseline reference lock clean
+.PHONY: help reproduce benchmark benchmark-speed report test docs lint format new-baseline check-baseline reference lock clean
 
 help: ## Show the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /|/' | awk -F'|' '{printf "  make %-16s %s\n", $$1, $$2}'
@@ -25,7 +25,7 @@ $(VENV)/run: pyproject.toml requirements.lock
 	@touch $@
 
 $(VENV)/test: $(VENV)/run
-	@$(PIP) --editable '.[peers,test,dev,dask]'
+	@$(PIP) --editable '.[peers,test,dev,dask,docs]'
 	@touch $@
 
 reproduce: $(VENV)/run ## The paper in full and every other experiment at quick size, into results/
@@ -43,8 +43,11 @@ benchmark-speed: $(VENV)/test ## The speed suite (pytest-benchmark), compared wi
 report: $(VENV)/run ## Write results/report.html again from the tables that are there
 	@$(RUN) report
 
-test: $(VENV)/test lint ## Lint, types and all tests
+test: $(VENV)/test lint docs ## Lint, types, docs and all tests
 	@$(BIN)/python -m pytest -n 2 --dist worksteal -q
+
+docs: $(VENV)/test ## Build docs into site/; broken links, citations and formulas fail
+	@$(BIN)/mkdocs build --quiet --strict
 
 lint: $(VENV)/test ## Lint, format check and type check
 	@$(BIN)/ruff check --quiet .
@@ -65,12 +68,12 @@ reference: $(VENV)/run ## Take the tables of the last run as the reference and q
 
 lock: ## Renew requirements.lock from the newest releases
 	@rm -rf $(VENV)-lock && $(PYTHON) -m venv $(VENV)-lock
-	@$(VENV)-lock/bin/pip --quiet --disable-pip-version-check install --editable '.[peers,test,dev,dask]'
+	@$(VENV)-lock/bin/pip --quiet --disable-pip-version-check install --editable '.[peers,test,dev,dask,docs]'
 	@(echo "# Versions that this release was tested with: constraints for pip, renewed by make lock."; \
 	  $(VENV)-lock/bin/pip --disable-pip-version-check freeze --exclude-editable) > requirements.lock.new
 	@mv requirements.lock.new requirements.lock && rm -rf $(VENV)-lock
 
 clean: ## Remove the environment, caches and generated results
-	@rm -rf $(VENV) build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
+	@rm -rf $(VENV) build dist site .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
 	@mkdir -p results && find results -mindepth 1 -maxdepth 1 ! -name reference ! -name README.md -exec rm -rf {} +
 	@find . -name __pycache__ -not -path './.git/*' -prune -exec rm -rf {} +

@@ -24,7 +24,12 @@ SHOWN = ("author", "year", "title", "journal", "booktitle", "volume", "pages", "
 CODE = r"(?P<code>^ *```.*?^ *```$|`[^`\n]+`)"
 FORMULA = re.compile(CODE + r"|\$\$(?P<block>.+?)\$\$|\$(?P<inline>[^$]+?)\$", re.M | re.S)
 CITATION = re.compile(CODE + r"|\[(?P<keys>@[\w:]+(?:; *@[\w:]+)*)\]", re.M | re.S)
-LINK = re.compile(CODE + r"|\[(?P<text>[^\]]+)\]\((?P<target>\.\./[^)#]+)(?P<anchor>#[^)]*)?\)", re.M | re.S)
+LINK = re.compile(
+    CODE + r"|\[(?P<text>[^\]]+)\]\((?P<target>\.\./[^)#]+)(?P<anchor>#[^)]*)?\)", re.M | re.S
+)
+FONT = re.compile(r"\\math(bb|bf|sf) ?([A-Za-z])")
+UNIT = re.compile(r"(?<=\d)(?=dd|cc|mm|cm|em|ex|sp|bp|pc|pt|mu)")
+"""A number before two letters that the converter takes for a length, as in 2dd."""
 TAG = re.compile(r"\\tag\{([^}]*)\}")
 ENTRY = re.compile(r"^@\w+\{(?P<key>\w+),\n(?P<body>.*?)^\}", re.M | re.S)
 FIELD = re.compile(r"^ *(\w+) *= *\{?(.*?)\}?,?$", re.M)
@@ -66,8 +71,9 @@ def on_page_content(content: str, page: Any, **_: Any) -> str:
 
 def _mathml(source: str, block: bool, place: str) -> str:
     tags = TAG.findall(source)
+    plain = UNIT.sub("{}", FONT.sub(r"\\math\1{\2}", TAG.sub("", source))).strip()
     try:
-        made = convert(TAG.sub("", source).strip(), display="block" if block else "inline")
+        made = convert(plain, display="block" if block else "inline")
     except Exception as error:  # of many kinds, by what is malformed
         log.warning("%s: %s in the formula %r", place, error, source)
         return html.escape(source)
@@ -107,7 +113,12 @@ def _entries() -> dict[str, dict[str, str]]:
 
 
 def _references() -> str:
-    lines = ["# References", "", "The publications and programs that pages and docstrings cite, by key.", ""]
+    lines = [
+        "# References",
+        "",
+        "The publications and programs that pages and docstrings cite, by key.",
+        "",
+    ]
     for key, fields in sorted(_entries().items()):
         parts = [_plain(fields[name]) for name in SHOWN if name in fields]
         if "doi" in fields:

@@ -85,6 +85,14 @@ def compare(
     ------
     ValueError
         On bad keyframes, an unknown scheme, or several tracks.
+
+    Examples
+    --------
+    >>> import quatspline as qs
+    >>> keyframes = [[1, 0, 0, 0], [0.8, 0.6, 0, 0], [0, 0.6, 0.8, 0], [0, 0, 1, 0]]
+    >>> table = qs.compare(None, keyframes, ["slerp", "quartic"])
+    >>> table.set_index("scheme")["continuity"].to_dict()
+    {'quartic': 2, 'slerp': 0}
     """
     keyframes = kf.prepare(times, quaternions, closed=closed)
     return _compared(keyframes, schemes)

@@ -45,6 +45,16 @@ class SolveReport:
     residual : largest miss at a keyframe, a rotation angle in rad
     converged : whether the stop rule was met at a right solution
     tolerance : what was asked for
+
+    Examples
+    --------
+    >>> import quatspline as qs
+    >>> keyframes = [[1, 0, 0, 0], [0.8, 0.6, 0, 0], [0, 0.6, 0.8, 0], [0, 0, 1, 0]]
+    >>> report = qs.build("nielson", None, keyframes, tolerance=1e-9).solve_report
+    >>> report.method, report.converged, report.residual <= report.tolerance
+    ('jacobi', True, True)
+    >>> qs.build("quartic", None, keyframes).solve_report is None
+    True
     """
 
     method: str
@@ -57,7 +67,18 @@ class SolveReport:
 
 
 class ConvergenceError(RuntimeError):
-    """A solve that did not converge; ``report`` is its `SolveReport`."""
+    """A solve that did not converge; ``report`` is its `SolveReport`.
+
+    Examples
+    --------
+    >>> import quatspline as qs
+    >>> keyframes = [[1, 0, 0, 0], [0.8, 0.6, 0, 0], [0, 0.6, 0.8, 0], [0, 0, 1, 0]]
+    >>> try:
+    ...     qs.build("nielson", None, keyframes, max_iterations=2)
+    ... except qs.ConvergenceError as error:
+    ...     error.report.iterations
+    2
+    """
 
     def __init__(self, message: str, report: SolveReport) -> None:
         super().__init__(message)
@@ -90,6 +111,17 @@ class Curve(abc.ABC):
         On bad input, naming the argument, the first offending index and the value.
     ConvergenceError
         When an iterative solver does not converge (unless ``on_failure="return"``).
+
+    Examples
+    --------
+    >>> import quatspline as qs
+    >>> curve = qs.build("quartic", [0, 2, 3], [[1, 0, 0, 0], [0.8, 0.6, 0, 0], [0, 0.6, 0.8, 0]])
+    >>> curve
+    <QuarticSpline 'quartic': 3 keyframes, open, [0, 3]>
+    >>> curve(2.0)
+    array([0.8, 0.6, 0. , 0. ])
+    >>> curve.keyframes.spacings
+    array([2., 1.])
     """
 
     name: ClassVar[str]
@@ -238,6 +270,15 @@ class Curve(abc.ABC):
         ------
         ValueError
             On NaN, times outside an open domain, an order that the scheme lacks, a wrong out.
+
+        Examples
+        --------
+        >>> import quatspline as qs
+        >>> spin = qs.build("slerp", [0, 1], [[1, 0, 0, 0], [0, 0, 0, 1]])  # half a turn about z
+        >>> spin(0.5, 1).round(6)
+        array([0.      , 0.      , 3.141593])
+        >>> spin([[0.1, 0.2, 0.3]]).shape
+        (1, 3, 4)
         """
         samples = _samples(t)
         if type(order) is not int or order not in self.orders:
@@ -265,13 +306,28 @@ class Curve(abc.ABC):
 
         Where the curve runs straight through -1 (a spin about one axis through the identity) it goes
         on past pi, anchored at ``domain[0]``.
+
+        Examples
+        --------
+        >>> import quatspline as qs
+        >>> spin = qs.build("slerp", [0, 1], [[1, 0, 0, 0], [0, 0, 0, 1]])
+        >>> spin.log(1).round(6)  # half the rotation vector
+        array([0.      , 0.      , 1.570796])
         """
         from quatspline.logcurve import log_curve
 
         return log_curve(self, t)
 
     def rotation(self, t: ArrayLike) -> Rotation:
-        """The orientations at t as a scipy ``Rotation``."""
+        """The orientations at t as a scipy ``Rotation``.
+
+        Examples
+        --------
+        >>> import quatspline as qs
+        >>> spin = qs.build("slerp", [0, 1], [[1, 0, 0, 0], [0, 0, 0, 1]])
+        >>> spin.rotation(0.5).as_euler("xyz", degrees=True).round(6)
+        array([ 0.,  0., 90.])
+        """
         from scipy.spatial.transform import Rotation
 
         return Rotation.from_quat(self(t), scalar_first=True)

@@ -105,7 +105,14 @@ def _found(places: tuple[Path, ...], changed: tuple[int, ...]) -> dict[str, Foun
 
 
 def schemes() -> list[str]:
-    """Sorted names of every usable scheme, peers included where their library imports."""
+    """Sorted names of every usable scheme, peers included where their library imports.
+
+    Examples
+    --------
+    >>> import quatspline as qs
+    >>> {"slerp", "quartic", "nielson"} <= set(qs.schemes())
+    True
+    """
     return [name for name, item in found().items() if item.scheme is not None]
 
 
@@ -116,6 +123,15 @@ def scheme(name: str) -> type[Curve]:
     ------
     ValueError
         An unknown name (with the nearest known one), or a scheme that cannot be used and why.
+
+    Examples
+    --------
+    >>> import quatspline as qs
+    >>> qs.scheme("squad").continuity, qs.scheme("squad").support
+    (1, 4)
+    >>> qs.scheme("quatric")
+    Traceback (most recent call last):
+    ValueError: unknown scheme 'quatric': did you mean 'quartic'?
     """
     everything = found()
     if not isinstance(name, str) or name not in everything:

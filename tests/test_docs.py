@@ -1,0 +1,149 @@
+"""The documentation: every scheme derived, examples that run, pages that build and hold together."""
+
+from __future__ import annotations
+
+import doctest
+import inspect
+import pkgutil
+import re
+import shutil
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import quatspline as qs
+from quatspline.registry import found
+from quatspline.report.readme import DOCS, PICTURES, QUOTING, ROOT, derivations
+
+SOURCE_LINK = re.compile(r"\]\(([^)#:]+)(?:#[^)]*)?\)")
+SRC = re.compile(r'(?:src|<link[^>]* href)="([^"]+)"')
+
+
+def listed() -> set[str]:
+    """In-house schemes that the README lists; a file newly put into baselines/ owes no page yet."""
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    return set(re.findall(r"^\| \[?`([\w-]+)`.*\| quatspline \|$", readme, re.M))
+
+
+def test_every_scheme_has_a_page() -> None:
+    pages = derivations()
+    assert listed()
+    assert not listed() - pages.keys()
+    assert not pages.keys() - found().keys()
+
+
+def test_pages_number_their_equations_once() -> None:
+    """(X.n) is unique over all pages, so that code can cite it."""
+    text = "".join(page.read_text(encoding="utf-8") for page in DOCS.rglob("*.md"))
+    numbers = re.findall(r"\\tag\{([^}]+)\}", text)
+    assert len(numbers) == len(set(numbers))
+
+
+def test_equations_that_pages_cite_exist() -> None:
+    text = "".join(page.read_text(encoding="utf-8") for page in DOCS.rglob("*.md"))
+    known = set(re.findall(r"\\tag\{([^}]+)\}", text))
+    letters = {number.split(".")[0] for number in known}
+    cited = set(re.findall(rf"\(((?:{'|'.join(letters)})\.\d+)\)", text))
+    assert not cited - known
+
+
+@pytest.mark.parametrize("file", QUOTING, ids=lambda file: file.name)
+def test_links_of_the_sources_exist(file: Path) -> None:
+    targets = SOURCE_LINK.findall(file.read_text(encoding="utf-8"))
+    assert targets
+    assert not [target for target in targets if not (file.parent / target).exists()]
+
+
+def test_the_readme_shows_a_picture() -> None:
+    assert (PICTURES / "figure3.png").stat().st_size > 10_000
+
+
+# -- examples -----------------------------------------------------------------------------------
+
+
+def test_the_readme_example_runs() -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"^```python\n(.*?)^```", readme, re.M | re.S)
+    assert blocks
+    names: dict[str, Any] = {}
+    for block in blocks:
+        exec(block, names)
+    curve = names["curve"]
+    np.testing.assert_allclose(np.abs(curve(2.5) @ [0.6, 0, 0.8, 0]), 1.0, atol=1e-15)
+    assert curve([0.1, 2.0], 1).shape == (2, 3)  # as the comment beside it says
+
+
+def modules() -> list[str]:
+    """Modules of the package that have examples."""
+    return [
+        item.name
+        for item in pkgutil.walk_packages(qs.__path__, "quatspline.")
+        if ">>> " in _source(item)
+    ]
+
+
+def _source(item: pkgutil.ModuleInfo) -> str:
+    spec = item.module_finder.find_spec(item.name, None)
+    assert spec is not None
+    assert spec.origin is not None
+    return Path(spec.origin).read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", modules())
+def test_docstring_examples_run(name: str) -> None:
+    result = doctest.testmod(import_module(name))
+    assert result.attempted > 0
+    assert result.failed == 0
+
+
+@pytest.mark.parametrize("name", sorted({*qs.__all__} - {"__version__", "Keyframes"}))
+def test_public_names_have_an_example(name: str) -> None:
+    """Keyframes are made by a curve, whose example shows them."""
+    assert ">>> " in (inspect.getdoc(getattr(qs, name)) or "")
+
+
+# -- pages --------------------------------------------------------------------------------------
+
+
+def build(docs: Path, site: Path) -> None:
+    """Build pages as `make docs` does."""
+    commands = pytest.importorskip("mkdocs.commands.build", reason="needs the extra 'docs'")
+    from mkdocs.config import load_config
+
+    config = load_config(str(ROOT / "mkdocs.yml"), docs_dir=str(docs), site_dir=str(site))
+    commands.build(config)
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")  # of the tool and its dependencies
+def test_pages_build_and_load_nothing_from_elsewhere(tmp_path: Path) -> None:
+    build(DOCS, tmp_path)
+    pages = sorted(tmp_path.rglob("*.html"))
+    assert len(pages) > len(list(DOCS.rglob("*.md")))
+    for page in pages:
+        text = page.read_text(encoding="utf-8")
+        assert not [source for source in SRC.findall(text) if "//" in source], page
+        assert "$$" not in text
+    assert "<math" in (tmp_path / "mathematics" / "quartic.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+@pytest.mark.parametrize(
+    "line",
+    [
+        "[a page](nowhere.md)",
+        "[an anchor](notation.md#nowhere)",
+        "[a file](../../baselines/nowhere.py)",
+        "As shown [@nobody1900].",
+        r"A formula $\nonsense{x}$.",
+    ],
+)
+def test_what_is_broken_does_not_build(line: str, tmp_path: Path) -> None:
+    docs = tmp_path / "docs"
+    shutil.copytree(DOCS, docs)
+    with (docs / "mathematics" / "slerp.md").open("a", encoding="utf-8") as page:
+        page.write(f"\n{line}\n")
+    with pytest.raises(pytest.importorskip("mkdocs.exceptions").Abort):
+        build(docs, tmp_path / "site")
