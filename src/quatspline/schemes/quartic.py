@@ -21,9 +21,9 @@ class QuarticSpline(SegmentCurve):
     --------
     >>> import quatspline as qs
     >>> from scipy.spatial.transform import Rotation
-    >>> spin = Rotation.from_euler("z", [0, 40, 80, 120], degrees=True)
-    >>> qs.QuarticSpline(None, spin).rotation(1.5).magnitude().round(6)  # 60 degrees
-    np.float64(1.047198)
+    >>> spin = Rotation.from_rotvec([[0, 0, a] for a in (0, 40, 80, 120)], degrees=True)
+    >>> qs.QuarticSpline(None, spin).rotation(1.5).as_rotvec(degrees=True).round(6)
+    array([ 0.,  0., 60.])
     """
 
     title = "Quartic C2 interpolatory spline"
