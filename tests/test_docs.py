@@ -16,7 +16,7 @@ import pytest
 
 import quatspline as qs
 from quatspline.registry import found
-from quatspline.report.readme import DOCS, PICTURES, QUOTING, ROOT, derivations
+from quatspline.report.readme import DOCS, PICTURES, QUOTING, ROOT, derivations, pages_block
 
 SOURCE_LINK = re.compile(r"\]\(([^)#:]+)(?:#[^)]*)?\)")
 SRC = re.compile(r'(?:src|<link[^>]* href)="([^"]+)"')
@@ -33,6 +33,14 @@ def test_every_scheme_has_a_page() -> None:
     assert listed()
     assert not listed() - pages.keys()
     assert not pages.keys() - found().keys()
+
+
+def test_the_index_says_what_would_be_generated() -> None:
+    """Row by row: a file newly put into baselines/ owes no row yet."""
+    index = (DOCS / "index.md").read_text(encoding="utf-8")
+    block = index.split("<!-- begin pages -->\n")[1].split("<!-- end pages -->")[0]
+    assert len(block.splitlines()) > len(listed())
+    assert not set(block.splitlines()) - set(pages_block().splitlines())
 
 
 def test_pages_number_their_equations_once() -> None:

@@ -31,6 +31,8 @@ FONT = re.compile(r"\\math(bb|bf|sf) ?([A-Za-z])")
 UNIT = re.compile(r"(?<=\d)(?=dd|cc|mm|cm|em|ex|sp|bp|pc|pt|mu)")
 """A number before two letters that the converter takes for a length, as in 2dd."""
 TAG = re.compile(r"\\tag\{([^}]*)\}")
+UNREAD = re.compile(r"\\[A-Za-z]+|<mi>&</mi>")
+"""What the converter passes through where it does not know a command or an environment."""
 ENTRY = re.compile(r"^@\w+\{(?P<key>\w+),\n(?P<body>.*?)^\}", re.M | re.S)
 FIELD = re.compile(r"^ *(\w+) *= *\{?(.*?)\}?,?$", re.M)
 
@@ -71,18 +73,23 @@ def on_page_content(content: str, page: Any, **_: Any) -> str:
 
 def _mathml(source: str, block: bool, place: str) -> str:
     tags = TAG.findall(source)
-    plain = UNIT.sub("{}", FONT.sub(r"\\math\1{\2}", TAG.sub("", source))).strip()
     try:
-        made = convert(plain, display="block" if block else "inline")
+        made = convert(_dialect(TAG.sub("", source)), display="block" if block else "inline")
     except Exception as error:  # of many kinds, by what is malformed
         log.warning("%s: %s in the formula %r", place, error, source)
         return html.escape(source)
-    if unknown := re.findall(r"\\[A-Za-z]+", made):
-        log.warning("%s: %s is not known in the formula %r", place, unknown[0], source)
+    if left := UNREAD.findall(made):
+        log.warning("%s: %s is left of the formula %r", place, left[0], source)
     if not block:
         return str(made)
     number = "".join(f'<span class="number" id="{t}">({t})</span>' for t in tags)
     return f'<span class="equation">{made}{number}</span>'
+
+
+def _dialect(source: str) -> str:
+    """A formula as the converter reads it."""
+    source = UNIT.sub("{}", FONT.sub(r"\\math\1{\2}", source))
+    return source.replace("{aligned}", "{align*}").strip()
 
 
 def _cited(keys: str, up: str, place: str) -> str:
@@ -120,11 +127,14 @@ def _references() -> str:
         "",
     ]
     for key, fields in sorted(_entries().items()):
+        if "author" in fields:
+            fields["author"] = fields["author"].replace(" and ", "; ")
         parts = [_plain(fields[name]) for name in SHOWN if name in fields]
         if "doi" in fields:
             parts.append(f"[doi:{fields['doi']}](https://doi.org/{fields['doi']})")
         elif "url" in fields:
             parts.append(f"<{fields['url']}>")
+        parts = [part.rstrip(".") for part in parts]
         lines += [f'- <span id="{key}"></span>**{key}**: ' + ". ".join(parts)]
     return "\n".join(lines) + "\n"
 
