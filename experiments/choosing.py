@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from quatspline.quaternion import FloatArray
 from quatspline.registry import found, version
 from quatspline.report import choosing, style
 from quatspline.report.quotes import Reader
@@ -18,15 +19,17 @@ KEYS = ["torque", "scheme"]
 NOTE = (
     "Derived from the tables claims, continuity, accuracy, locality, edge-cases, convergence, fairness and cost of "
     "this folder; missing names those that are not there. smooth_k: k of C^k at steps of 60 degrees; smooth_k_worst: "
-    "over all steps and times measured, -1 being a leap. order: of the error, uniform times. torque: median and worst "
-    "of the energy over the minimum, committed sets. operations: exponentials and logarithms, two a slerp, for a "
-    "sample and a keyframe, iterations included; empty where a scheme counts other things. pareto: yes where no other "
-    "scheme that passes through its keys is at least as good in torque, order (whole) and both operations and better "
-    "in one; times_pareto: the same with the two timings, which libraries have, too. Timings are of 10,000 "
-    "samples and 1000 keyframes, or the largest size below that was measured."
+    "over all steps and times measured, -1 being a leap. order: of the error, uniform times, up to 321 keyframes. "
+    "spacing_0.1deg: the spacing from which on the error on a smooth motion stays below 0.1 degrees. torque: median "
+    "and worst of the energy over the minimum, committed sets. operations: exponentials and logarithms, two a slerp, "
+    "for a sample and a keyframe, iterations included; empty where a scheme counts other things. pareto: yes where "
+    "no other scheme that passes through its keys is at least as good in torque, order (whole) and both operations "
+    "and better in one; times_pareto: the same with the two timings, which libraries have, too. Timings are of "
+    "10,000 samples and 1000 keyframes, or the largest size below that was measured."
 )
 FORMATS = {
     "order": ".2f",
+    "spacing_0.1deg": ".3g",
     "torque": ".4f",
     "torque_worst": ".3f",
     "operations_sample": ".0f",
@@ -37,8 +40,8 @@ FORMATS = {
     "times_fastest_keyframe": ".1f",
 }
 COLUMNS = [
-    *("scheme", "passes_keys", "smooth_k", "smooth_k_worst", "order", "support", "uneven_times"),
-    *("closes", "worst_failure", "edge_cases_exact", "torque", "torque_worst"),
+    *("scheme", "passes_keys", "smooth_k", "smooth_k_worst", "order", "spacing_0.1deg", "support"),
+    *("uneven_times", "closes", "worst_failure", "edge_cases_exact", "torque", "torque_worst"),
     *("operations_sample", "operations_keyframe", "pareto", "version", "missing"),
     *("nanoseconds_per_sample", "microseconds_per_keyframe"),
     *("times_fastest_sample", "times_fastest_keyframe", "times_pareto"),
@@ -61,6 +64,8 @@ COUNTED = {"exps": 1.0, "logs": 1.0, "slerps": 2.0}
 """Operations with their weights: a slerp is a logarithm and an exponential."""
 LEAST_EXCESS = 1e-4
 """Excess of torque below this is drawn there."""
+GAP, ROOM = 0.034, 3.0
+"""Between names, as a share of the height; and beside the slowest scheme, for lines to names."""
 
 
 def derive(run: Run, read: Reader) -> pd.DataFrame:
@@ -97,6 +102,8 @@ def _claims(table: pd.DataFrame) -> pd.DataFrame:
     other = rows["claimed"].map({"yes": "no", "no": "yes"})
     answers = rows.assign(answer=rows["claimed"].where(rows["verdict"] == "holds", other))
     answers = answers.pivot(index="scheme", columns="claim", values="answer").rename(columns=ASKED)
+    orders = table[table["claim"].eq("order")].set_index("scheme")["measured"].astype(float)
+    answers = answers.assign(order=orders)
     tried = table[table["claim"].str.startswith("continuity") & table["measured"].notna()]
     tried = tried.assign(
         k=tried["measured"].astype(int), case=tried["claim"].str.split(", ", n=1).str[1]
@@ -120,8 +127,7 @@ def _smoothness(rows: pd.DataFrame, source: str) -> pd.DataFrame:
 
 
 def _accuracy(table: pd.DataFrame) -> pd.DataFrame:
-    uniform = table[table["knots"] == "uniform"]
-    return uniform.groupby("scheme")[["regression"]].first().rename(columns={"regression": "order"})
+    return table[table["knots"] == "uniform"].groupby("scheme")[["spacing_0.1deg"]].first()
 
 
 def _locality(table: pd.DataFrame) -> pd.DataFrame:
@@ -219,24 +225,36 @@ def draw(table: pd.DataFrame) -> Figure:
         ax.plot(x, y, **looks, ms=5, mfc=face)
     ax.set(xscale="log", yscale="log", xlabel="nanoseconds a sample")
     ax.set_ylabel("median excess of torque energy over the minimum")
+    ax.set_xlim(right=ROOM * ax.get_xlim()[1])
     _labels(ax, shown)
     return fig
 
 
 def _labels(ax: Any, shown: pd.DataFrame) -> None:
-    """Names in a column at the right, in the order of their points, each with a line to its own."""
-    rows = shown.sort_values(["excess", "scheme"])
-    heights = np.linspace(0.01, 0.99, len(rows))
+    """Names in a column at the right, near the height of their points, each with a line to its own."""
+    lo, hi = np.log(ax.get_ylim())
+    rows = shown.sort_values(["excess", "nanoseconds_per_sample", "scheme"])
+    heights = _spread((np.log(rows["excess"].to_numpy()) - lo) / (hi - lo), GAP)
     for height, (_, row) in zip(heights, rows.iterrows(), strict=True):
         ax.annotate(
             row["scheme"],
             (row["nanoseconds_per_sample"], row["excess"]),
-            (1.06, height),
+            (1.04, height),
             textcoords="axes fraction",
             va="center",
             fontsize=7,
-            arrowprops={"arrowstyle": "-", "color": "#bbbbbb", "lw": 0.4, "shrinkB": 3},
+            arrowprops={"arrowstyle": "-", "color": "#bbbbbb", "lw": 0.4, "relpos": (0.0, 0.5)},
         )
+
+
+def _spread(wanted: FloatArray, gap: float) -> list[float]:
+    """Heights, ascending, that keep a gap and stay in [0, 1] as near to those wanted as that goes."""
+    heights: list[float] = []
+    for i, height in enumerate(wanted):
+        highest = 1.0 - gap * (len(wanted) - 1 - i)
+        lowest = heights[-1] + gap if heights else 0.0
+        heights.append(max(lowest, min(float(height), highest)))
+    return heights
 
 
 def caption(table: pd.DataFrame) -> str:

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
+import matplotlib as mpl
 import pandas as pd
 from matplotlib.figure import Figure
 
@@ -15,7 +16,7 @@ from quatspline.instruments.published import published, works
 from quatspline.instruments.trials import Row
 from quatspline.registry import found, version
 from quatspline.report import style
-from quatspline.report.heat import ROW
+from quatspline.report.heat import ROW, label_cells
 from quatspline.running import Run
 
 TITLE = "Claims and verdicts"
@@ -41,7 +42,9 @@ SMOOTHEST = 3
 """The highest k that a probe tells."""
 RATES = ("no", "interior", "everywhere")
 """Places of a constant rate, from fewest to most."""
-COLORS = {HOLDS: "#009e73", DEPARTS: "#d55e00", UNKNOWN: "#b0b0b0"}
+COLORS = {UNKNOWN: "#c8c8c8", HOLDS: "#8fd3bd", DEPARTS: "#d55e00"}
+"""By verdict, the gravest last; text is legible on all of them."""
+OTHERS = "other sayings"
 
 
 def cells(run: Run) -> list[dict[str, Any]]:
@@ -152,24 +155,39 @@ def _regimes(run: Run, cls: type[Curve]) -> dict[str, list[Probe]]:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    counts = table.groupby(["scheme", "verdict"]).size().unstack(fill_value=0)
-    counts = counts.reindex(columns=list(COLORS), fill_value=0)
-    counts = counts.sort_values([DEPARTS, HOLDS], ascending=[True, False], kind="stable")
-    fig, panels = style.axes(style.PAGE, ROW * len(counts) + 1.0)
-    ax, left = panels[0, 0], counts[HOLDS] * 0
-    for verdict, color in COLORS.items():
-        ax.barh(range(len(counts)), counts[verdict], left=left, color=color, label=verdict)
-        left = left + counts[verdict]
-    ax.set_yticks(range(len(counts)), list(counts.index))
-    ax.set(xlabel="claims", ylim=(len(counts) - 0.4, -0.6))
-    style.legend_of(fig, ax, len(COLORS))
+    sayings = {claim.text for name in table["scheme"].unique() for claim in published(name)}
+    columns = [name for name in dict.fromkeys(table["claim"]) if name not in sayings]
+    named = table[table["claim"].isin(columns)]
+    verdicts = named.pivot(index="scheme", columns="claim", values="verdict")[columns]
+    texts = named.pivot(index="scheme", columns="claim", values="measured")[columns]
+    rest = table[~table["claim"].isin(columns)].groupby("scheme")["verdict"]
+    told = rest.agg(lambda found: f"{(found == DEPARTS).sum()}/{len(found)} depart")
+    verdicts[OTHERS] = rest.agg(lambda found: max(found, key=list(COLORS).index))
+    texts[OTHERS] = told
+    departs = (verdicts == DEPARTS).sum(axis=1).sort_values(kind="stable").index
+    fig, panels = style.axes(style.PAGE, ROW * len(verdicts) + 1.5)
+    _matrix(panels[0, 0], verdicts.loc[departs], texts.loc[departs])
     return fig
+
+
+def _matrix(ax: Any, verdicts: pd.DataFrame, texts: pd.DataFrame) -> None:
+    codes = verdicts.apply(lambda column: column.map(list(COLORS).index, na_action="ignore"))
+    colors = mpl.colors.ListedColormap(list(COLORS.values()))
+    ax.imshow(codes.astype(float), cmap=colors, vmin=0, vmax=len(COLORS) - 1, aspect="auto")
+    label_cells(ax, texts.fillna(""), verdicts == DEPARTS)
+    heads = [str(name).replace(" degrees", "°") for name in verdicts]
+    heads = [name.replace(", ", "\n", 1).replace(" is the", "\nis the") for name in heads]
+    ax.set_xticks(range(verdicts.shape[1]), heads, fontsize=6, rotation=90)
+    ax.set_yticks(range(len(verdicts)), list(verdicts.index))
+    ax.tick_params(length=0, top=True, labeltop=True, bottom=False, labelbottom=False)
+    ax.grid(visible=False)
 
 
 def caption(table: pd.DataFrame) -> str:
     counts = table["verdict"].value_counts()
     parts = [f"{counts.get(verdict, 0)} {verdict}" for verdict in COLORS]
     return (
-        f"Claims about each scheme by verdict, fewest departures first; of {len(table)} in all, {', '.join(parts)}. "
-        "Continuity is claimed once and tried under several step angles and kinds of times."
+        f"Claims by verdict (red: departs, green: holds, grey: not measurable) with what was measured; of {len(table)} "
+        f"in all, {', '.join(parts)}. Continuity is claimed once and tried under several step angles and kinds of "
+        "times. Rows are sorted by departures; other sayings are those of publications and libraries about one scheme."
     )

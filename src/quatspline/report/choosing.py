@@ -171,9 +171,10 @@ def _best(question: Question, table: pd.DataFrame) -> str | None:
 
 
 def _sentence(question: Question, ledger: Ledger, best: str) -> tuple[Part, ...]:
-    cells = {column: ledger(TABLE, column, scheme=best) for column in ("scheme", *question.quoted)}
-    known = [text for column, text in question.quoted.items() if not pd.isna(cells[column].value)]
-    return said(f"{question.wish}: {{scheme}} ({', '.join(known)}).", **cells)
+    known = [column for column in question.quoted if column in ledger.columns(TABLE)]
+    cells = {column: ledger(TABLE, column, scheme=best) for column in ("scheme", *known)}
+    texts = [question.quoted[column] for column in known if not pd.isna(cells[column].value)]
+    return said(f"{question.wish}: {{scheme}} ({', '.join(texts)}).", **cells)
 
 
 def lines(table: pd.DataFrame) -> Iterator[str]:
