@@ -8,8 +8,10 @@ stem with hyphens.  It holds
 ``PAPER: bool``                  whether it is one of the paper's (run in full by default)
 ``measure(run) -> DataFrame``    one row a measurement, a failure being a row with its reason; or
 ``cells(run)``, ``measure_cell(run, **cell)``  the same in parts that run side by side (see `sweeps`)
+``derive(run, read) -> DataFrame``  a table made of others of the folder, by name: run after them
 ``draw(table) -> Figure``        optional: the figure, drawn from the table as read from its file
 ``caption(table) -> str``        optional: what the figure shows
+``text(table) -> str``           optional: Markdown that follows the table in its Markdown copy
 ``FORMATS: dict[str, str]``      optional: format specifications of columns in the Markdown
 ``NOTE: str``                    optional: what a reader of the table must know
 ``KEYS: list[str]``              optional: columns that rows are sorted by (see `Results.table`)
@@ -91,6 +93,11 @@ class Experiment:
         return bool(getattr(self.module, "PAPER", False))
 
     @property
+    def derived(self) -> bool:
+        """Whether it is made of the tables of others."""
+        return callable(getattr(self.module, "derive", None))
+
+    @property
     def title(self) -> str:
         """What its table is called."""
         return str(getattr(self.module, "TITLE", self.name))
@@ -110,7 +117,7 @@ def found() -> dict[str, Path]:
 
 
 def experiments(names: Sequence[str] = ()) -> list[Experiment]:
-    """The experiments asked for in that order; by default all, the paper's first.
+    """The experiments asked for in that order; by default all, the paper's first; derived ones last.
 
     Raises
     ------
@@ -124,8 +131,10 @@ def experiments(names: Sequence[str] = ()) -> list[Experiment]:
     if not files:
         raise ValueError(f"no experiments in {registry.shipped('experiments')} or ${FOLDERS}")
     if names:
-        return [_loaded(name, files[name]) for name in dict.fromkeys(names)]
-    return sorted((_loaded(*item) for item in files.items()), key=lambda e: (not e.paper, e.name))
+        asked = [_loaded(name, files[name]) for name in dict.fromkeys(names)]
+        return sorted(asked, key=lambda e: e.derived)
+    loaded = [_loaded(*item) for item in files.items()]
+    return sorted(loaded, key=lambda e: (e.derived, not e.paper, e.name))
 
 
 def _loaded(name: str, path: Path) -> Experiment:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from quatspline import registry, sweeps
 from quatspline.experiment import Experiment, Run, experiments, fingerprint, found, reason
+from quatspline.report.findings import reader
 from quatspline.report.results import PAGE, Journal, Results, now
 
 if TYPE_CHECKING:
@@ -121,6 +122,7 @@ def _perform(experiment: Experiment, run: Run, results: Results) -> None:
         note=note,
         formats=getattr(module, "FORMATS", None),
         keys=getattr(module, "KEYS", None),
+        closing=getattr(module, "text", None),
     )
     if hasattr(module, "caption"):
         results.text(f"{name}.caption.txt", module.caption(table).strip() + "\n")
@@ -133,8 +135,11 @@ def _measured(name: str, module: ModuleType, run: Run, results: Results) -> Any:
         return sweeps.sweep(name, module, run, sweeps.Kept(results, name, fingerprint({name: run})))
     if callable(getattr(module, "measure", None)):
         return module.measure(run)
+    if callable(getattr(module, "derive", None)):
+        return module.derive(run, reader(results.folder))
     raise TypeError(
-        "no function measure(run), nor cells(run) and measure_cell(run, ...), in the file"
+        "no function measure(run), nor cells(run) and measure_cell(run, ...), nor derive(run, read), "
+        "in the file"
     )
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import pandas as pd
 
+from quatspline.report import choosing
 from quatspline.report.quotes import Cell, Ledger, Part, Quote, Reader, Span, said
 
 
@@ -43,7 +44,16 @@ def findings(read: Reader) -> list[Finding]:
             found.append(Finding(topic, sentence(Ledger(read))))
         except (FileNotFoundError, LookupError):  # an experiment not run, or run for fewer cases
             continue
-    return found
+    return found + _decisions(read)
+
+
+def _decisions(read: Reader) -> list[Finding]:
+    try:
+        return [
+            Finding(choosing.TABLE, parts) for parts in choosing.decisions(read(choosing.TABLE))
+        ]
+    except FileNotFoundError:
+        return []
 
 
 def reader(folder: Path) -> Reader:

@@ -107,6 +107,10 @@ class Ledger:
         """What a column holds in the rows that match, sorted, each value once."""
         return sorted(self._matching(table, row)[column].dropna().unique().tolist())
 
+    def columns(self, table: str) -> list[str]:
+        """Names of a table's columns."""
+        return [str(name) for name in self._read(table)]
+
     def _matching(self, table: str, row: Mapping[str, Any]) -> pd.DataFrame:
         picked = self._read(table)
         for key, value in row.items():

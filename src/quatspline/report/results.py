@@ -8,7 +8,7 @@ import json
 import os
 import platform
 import subprocess
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
@@ -70,19 +70,23 @@ class Results:
         note: str = "",
         formats: Mapping[str, str] | None = None,
         keys: Sequence[str] | None = None,
+        closing: Callable[[pd.DataFrame], str] | None = None,
     ) -> pd.DataFrame:
         """Write a table as ``<name>.csv`` and ``<name>.md``; returns it as read back from the CSV.
 
         Rows are sorted by ``keys``, by default the columns before the first of floats (all that are
         not floats, if that one leads); rows that tie keep their order.  ``formats`` gives columns
-        of the Markdown a format specification.
+        of the Markdown a format specification; ``closing`` makes of the table as read back what
+        follows it there.
         """
         ordered = _ordered(frame, keys)
         csv = ordered.to_csv(index=False, float_format=CSV_FLOAT, lineterminator="\n")
         self.text(f"{name}.csv", csv)
+        table = self.read_table(name)
         parts = [f"# {title}" if title else "", note, markdown(ordered, formats)]
+        parts.append(closing(table) if closing is not None else "")
         self.text(f"{name}.md", "\n\n".join(part for part in parts if part) + "\n")
-        return self.read_table(name)
+        return table
 
     def read_table(self, name: str) -> pd.DataFrame:
         """A table of this folder; an empty field is missing, any other text is itself."""

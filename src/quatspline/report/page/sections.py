@@ -54,6 +54,12 @@ RANKINGS: dict[str, Ranking] = {
         False,
         "torque energy over the least of all schemes compared; less is better",
     ),
+    "choosing": Ranking(
+        "torque",
+        False,
+        "the median over the committed keyframe sets of the torque energy over the least possible; less is better",
+    ),
+    "claims": Ranking("verdict", False, "the verdict: what departs comes first"),
 }
 
 SECTIONS: tuple[Section, ...] = (
@@ -71,6 +77,15 @@ SECTIONS: tuple[Section, ...] = (
         "Which scheme",
         "One row a scheme, one column a question. Sort by any column: the line above the table states the criterion.",
         ("choosing",),
+        (
+            Plot(
+                "choosing",
+                ("nanoseconds_per_sample", "microseconds_per_keyframe", "operations_sample"),
+                ("torque", "torque_worst", "order"),
+                "points",
+                log=(True, True),
+            ),
+        ),
     ),
     Section(
         "table1",

@@ -1,0 +1,265 @@
+"""One row a scheme, one column a question: derived from the other tables of the folder."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from quatspline.quaternion import FloatArray
+from quatspline.registry import found, version
+from quatspline.report import choosing, style
+from quatspline.report.quotes import Reader
+from quatspline.running import Run
+
+TITLE = "Which scheme"
+PAPER = False
+KEYS = ["torque", "scheme"]
+NOTE = (
+    "Derived from the tables claims, continuity, accuracy, locality, edge-cases, convergence, fairness and cost of "
+    "this folder; missing names those that are not there. smooth_k: k of C^k at steps of 60 degrees; smooth_k_worst: "
+    "over all steps and times measured, -1 being a leap. order: of the error, uniform times, up to 321 keyframes. "
+    "spacing_0.1deg: the spacing from which on the error on a smooth motion stays below 0.1 degrees. torque: median "
+    "and worst of the energy over the minimum, committed sets. operations: exponentials and logarithms, two a slerp, "
+    "for a sample and a keyframe, iterations included; empty where a scheme counts other things. pareto: yes where "
+    "no other scheme that passes through its keys is at least as good in torque, order (whole) and both operations "
+    "and better in one; times_pareto: the same with the two timings, which libraries have, too. Timings are of "
+    "10,000 samples and 1000 keyframes, or the largest size below that was measured."
+)
+FORMATS = {
+    "order": ".2f",
+    "spacing_0.1deg": ".3g",
+    "torque": ".4f",
+    "torque_worst": ".3f",
+    "operations_sample": ".0f",
+    "operations_keyframe": ".0f",
+    "nanoseconds_per_sample": ".3g",
+    "microseconds_per_keyframe": ".3g",
+    "times_fastest_sample": ".1f",
+    "times_fastest_keyframe": ".1f",
+}
+COLUMNS = [
+    *("scheme", "passes_keys", "smooth_k", "smooth_k_worst", "order", "spacing_0.1deg", "support"),
+    *("uneven_times", "closes", "worst_failure", "edge_cases_exact", "torque", "torque_worst"),
+    *("operations_sample", "operations_keyframe", "pareto", "version", "missing"),
+    *("nanoseconds_per_sample", "microseconds_per_keyframe"),
+    *("times_fastest_sample", "times_fastest_keyframe", "times_pareto"),
+]
+WHOLE = ("smooth_k", "smooth_k_worst", "edge_cases_exact")
+WORST = ("k_claims", "k_continuity")
+FAILURES = ("leaps_claims", "leaps_continuity", "unsolved", "edges")
+"""Columns on the way: worst continuities, and failures, of which the first that there is counts as the worst."""
+ASKED = {"interpolates": "passes_keys", "takes uneven times": "uneven_times", "closes": "closes"}
+"""Claims whose measured answers are columns."""
+EASY, SMOOTH = "60 degrees", "smooth"
+SIZES = {"evaluation": 10_000, "set-up": 1000}
+COSTS = {
+    "evaluation": ("nanoseconds_per_sample", "operations_sample", "times_fastest_sample", 1e9),
+    "set-up": ("microseconds_per_keyframe", "operations_keyframe", "times_fastest_keyframe", 1e6),
+}
+"""Columns of a task, and units a second."""
+UNITS = {"evaluation": "sample", "set-up": "keyframe"}
+COUNTED = {"exps": 1.0, "logs": 1.0, "slerps": 2.0}
+"""Operations with their weights: a slerp is a logarithm and an exponential."""
+LEAST_EXCESS = 1e-4
+"""Excess of torque below this is drawn there."""
+GAP, ROOM = 0.034, 3.0
+"""Between names, as a share of the height; and beside the slowest scheme, for lines to names."""
+
+
+def derive(run: Run, read: Reader) -> pd.DataFrame:
+    parts, missing = [], []
+    for name, gather in SOURCES.items():
+        try:
+            parts.append(gather(read(name)))
+        except FileNotFoundError:
+            missing.append(name)
+    if not parts:
+        raise ValueError(f"none of {', '.join(SOURCES)} is in the folder: run them first")
+    table = pd.concat(parts, axis=1).rename_axis("scheme").reset_index()
+    table = table[table["scheme"].isin(run.schemes if run.schemes is not None else list(found()))]
+    table = table.reindex(columns=[*COLUMNS, *WORST, *FAILURES]).infer_objects()
+    table["smooth_k_worst"] = table[list(WORST)].min(axis=1)
+    table["worst_failure"] = table[list(FAILURES)].astype(object).bfill(axis=1).iloc[:, 0]
+    table["version"] = table["scheme"].map(version)
+    table["missing"] = ", ".join(missing) or None
+    through = table[table["passes_keys"].ne("no")]
+    table["pareto"] = choosing.pareto(through, choosing.COUNTED)
+    table["times_pareto"] = choosing.pareto(through, choosing.TIMED)
+    return table[COLUMNS].astype(dict.fromkeys(WHOLE, "Int64"))
+
+
+def text(table: pd.DataFrame) -> str:
+    return "## Decisions\n\n" + "\n".join(choosing.lines(table))
+
+
+# -- what each table says -----------------------------------------------------------------------
+
+
+def _claims(table: pd.DataFrame) -> pd.DataFrame:
+    rows = table[table["claim"].isin(ASKED) & table["measured"].notna()]
+    other = rows["claimed"].map({"yes": "no", "no": "yes"})
+    answers = rows.assign(answer=rows["claimed"].where(rows["verdict"] == "holds", other))
+    answers = answers.pivot(index="scheme", columns="claim", values="answer").rename(columns=ASKED)
+    orders = table[table["claim"].eq("order")].set_index("scheme")["measured"].astype(float)
+    answers = answers.assign(order=orders)
+    tried = table[table["claim"].str.startswith("continuity") & table["measured"].notna()]
+    tried = tried.assign(
+        k=tried["measured"].astype(int), case=tried["claim"].str.split(", ", n=1).str[1]
+    )
+    return answers.join(_smoothness(tried, "claims"), how="outer")
+
+
+def _continuity(table: pd.DataFrame) -> pd.DataFrame:
+    known = table[table["measured_k"].notna() & ~table["case"].str.startswith(SMOOTH)]
+    known = known.assign(k=known["measured_k"])
+    easy = known[known["case"].str.startswith(EASY)].groupby("scheme")["k"].min()
+    return _smoothness(known, "continuity").assign(smooth_k=easy)
+
+
+def _smoothness(rows: pd.DataFrame, source: str) -> pd.DataFrame:
+    """The worst k of a table that tells cases, and the first case in which a curve leaps."""
+    leaps = rows[rows["k"] < 0].groupby("scheme")["case"].first()
+    return pd.DataFrame(
+        {f"k_{source}": rows.groupby("scheme")["k"].min(), f"leaps_{source}": "leaps: " + leaps}
+    )
+
+
+def _accuracy(table: pd.DataFrame) -> pd.DataFrame:
+    return table[table["knots"] == "uniform"].groupby("scheme")[["spacing_0.1deg"]].first()
+
+
+def _locality(table: pd.DataFrame) -> pd.DataFrame:
+    first = table[table["support"].notna()].groupby("scheme").first()
+    local = first["support"].astype(int).astype(str)
+    return pd.DataFrame({"support": local.where(first["decay"].isna(), "all")})
+
+
+def _edge_cases(table: pd.DataFrame) -> pd.DataFrame:
+    """How many are exact, and the worst of the others: not a number, then failed, then the farthest off."""
+    exact = table[table["result"] == "exact"].groupby("scheme").size()
+    bad = table[(table["result"] != "exact") & ~_refused(table)]
+    rank = bad["result"].map({"NaN": 0, "error": 1, "wrong": 2})
+    bad = bad.assign(rank=rank).sort_values(["rank", "relative"], ascending=[True, False])
+    worst = bad.groupby("scheme").first()
+    off = worst["relative"].map("off by {:.2g} of the step: ".format)
+    how = off.where(worst["rank"] == 2, worst["result"] + ": ")
+    edges = how + worst["case"] if len(worst) else None
+    return pd.DataFrame({"edge_cases_exact": exact, "edges": edges})
+
+
+def _refused(table: pd.DataFrame) -> pd.Series:
+    """A scheme that says that it does not apply has not failed."""
+    return table["failure"].fillna("").str.startswith("ValueError")
+
+
+def _convergence(table: pd.DataFrame) -> pd.DataFrame:
+    """The share solved where it is least, by the best of a scheme's methods."""
+    where = ["scheme", "keyframes", "step_degrees", "unevenness"]
+    best = table[table["share_converged"].notna()].groupby(where)["share_converged"].max()
+    worst = best.reset_index().sort_values("share_converged", kind="stable").groupby("scheme")
+    rows = worst.first()
+    rows = rows[rows["share_converged"] < 1.0]
+    told = [
+        f"solves {100.0 * row['share_converged']:.3g} %: {row['keyframes']:.0f} keyframes, "
+        f"{row['step_degrees']:.0f} degrees, unevenness {row['unevenness']:.3g}"
+        for _, row in rows.iterrows()
+    ]
+    return pd.DataFrame({"unsolved": pd.Series(told, index=rows.index, dtype=object)})
+
+
+def _fairness(table: pd.DataFrame) -> pd.DataFrame:
+    rows = table[table["data"] == "committed"].set_index("scheme")
+    return rows[["median", "worst"]].set_axis(["torque", "torque_worst"], axis=1)
+
+
+def _cost(table: pd.DataFrame) -> pd.DataFrame:
+    parts = []
+    for task, (seconds, operations, fastest, unit) in COSTS.items():
+        rows = table[(table["task"] == task) & (table["size"] <= SIZES[task])]
+        rows = rows[rows["seconds_median"].notna()].sort_values("size").groupby("scheme").last()
+        each = rows["seconds_median"] / rows["size"] * unit
+        counts = rows[list(COUNTED)].mul(pd.Series(COUNTED)).sum(axis=1, skipna=False)
+        told = [_all_counted(str(name), UNITS[task]) for name in rows.index]
+        part = {seconds: each, operations: counts.where(np.array(told, dtype=bool))}
+        parts.append(pd.DataFrame({**part, fastest: each / each.min()}))
+    return pd.concat(parts, axis=1)
+
+
+def _all_counted(name: str, unit: str) -> bool:
+    """Whether a scheme states what a unit takes, and in nothing but the operations added here."""
+    item = found().get(name)
+    stated = item.scheme.operations if item is not None and item.scheme is not None else {}
+    per = [key.partition(" per ") for key in stated]
+    kinds = {operation for operation, _, of in per if of.split(" and ")[0] == unit}
+    return bool(kinds) and kinds <= set(COUNTED)
+
+
+SOURCES: dict[str, Callable[[pd.DataFrame], pd.DataFrame]] = {
+    "claims": _claims,
+    "continuity": _continuity,
+    "accuracy": _accuracy,
+    "locality": _locality,
+    "edge-cases": _edge_cases,
+    "convergence": _convergence,
+    "fairness": _fairness,
+    "cost": _cost,
+}
+
+
+# -- figure -------------------------------------------------------------------------------------
+
+
+def draw(table: pd.DataFrame) -> Figure:
+    fig, panels = style.axes(style.PAGE, 4.6)
+    ax = panels[0, 0]
+    shown = table[np.isfinite(table["torque"]) & table["nanoseconds_per_sample"].notna()]
+    shown = shown.assign(excess=(shown["torque"] - 1.0).clip(lower=LEAST_EXCESS))
+    for _, row in shown.iterrows():
+        looks = style.scheme_style(row["scheme"]) | {"linestyle": ""}
+        face = looks["color"] if row["times_pareto"] == "yes" else "white"
+        x, y = row["nanoseconds_per_sample"], row["excess"]
+        if row["pareto"] == "yes":
+            ax.plot(x, y, "o", ms=10, mfc="none", mec="#999999", mew=0.8)
+        ax.plot(x, y, **looks, ms=5, mfc=face)
+    ax.set(xscale="log", yscale="log", xlabel="nanoseconds a sample")
+    ax.set_ylabel("median excess of torque energy over the minimum")
+    ax.set_xlim(right=ROOM * ax.get_xlim()[1])
+    _labels(ax, shown)
+    return fig
+
+
+def _labels(ax: Any, shown: pd.DataFrame) -> None:
+    """Names in a column at the right, near the height of their points, each with a line to its own."""
+    lo, hi = np.log(ax.get_ylim())
+    rows = shown.sort_values(["excess", "nanoseconds_per_sample", "scheme"])
+    heights = _spread((np.log(rows["excess"].to_numpy()) - lo) / (hi - lo), GAP)
+    for height, (_, row) in zip(heights, rows.iterrows(), strict=True):
+        ax.annotate(
+            row["scheme"],
+            (row["nanoseconds_per_sample"], row["excess"]),
+            (1.04, height),
+            textcoords="axes fraction",
+            va="center",
+            fontsize=7,
+            arrowprops={"arrowstyle": "-", "color": "#bbbbbb", "lw": 0.4, "relpos": (0.0, 0.5)},
+        )
+
+
+def _spread(wanted: FloatArray, gap: float) -> list[float]:
+    """Heights, ascending, that keep a gap and stay in [0, 1] as near to those wanted as that goes."""
+    heights: list[float] = []
+    for i, height in enumerate(wanted):
+        highest = 1.0 - gap * (len(wanted) - 1 - i)
+        lowest = heights[-1] + gap if heights else 0.0
+        heights.append(max(lowest, min(float(height), highest)))
+    return heights
+
+
+def caption(table: pd.DataFrame) -> str:
+    return (
+        "Torque energy over the minimum (median of the committed sets, minus 1; below 1e-4 drawn there) against the "
+        "time of a sample; both are better when less. Filled: on the front of torque, order and the two timings; "
+        "ringed: on that of torque, order and counted operations. Schemes of infinite energy are left out."
+    )

@@ -1,0 +1,193 @@
+"""Every claim about every scheme beside what is measured, with the simplest case that decides."""
+
+import operator
+from collections.abc import Iterator
+from functools import partial
+from typing import Any
+
+import matplotlib as mpl
+import pandas as pd
+from matplotlib.figure import Figure
+
+from quatspline.curve import Curve
+from quatspline.instruments import probes
+from quatspline.instruments.claims import DEPARTS, HOLDS, UNKNOWN, Claim, Probe, Source, judged
+from quatspline.instruments.published import published, works
+from quatspline.instruments.trials import Row
+from quatspline.registry import found, version
+from quatspline.report import style
+from quatspline.report.heat import ROW, label_cells
+from quatspline.running import Run
+
+TITLE = "Claims and verdicts"
+PAPER = False
+KEYS: list[str] = []
+NOTE = (
+    "source: ours (attributes of the class), peer (what the library publishes), paper (a publication, by default "
+    "that of 2017). verdict: holds, departs, or not measurable with the reason in failure. case is a line of Python "
+    "that prints the value measured: the first of the cases tried, from few keyframes to more, at which a claim "
+    "departs, otherwise the one where it holds least well. continuity holds where the measured k is at least that "
+    "claimed; order within 0.3; keyframes are met to 1e-6 rad; published rates are the curve's to 1e-6 (omega) or "
+    "1e-3 (alpha) of their size; cost is counted in exponentials and logarithms, of which half the printed ratio "
+    "will do."
+)
+MET = 1e-6
+"""Largest angle (rad) at a keyframe that counts as passing through it."""
+ORDER = 0.3
+"""A slope over two halvings is this far off the order at most: neighbours are told apart."""
+RATE = {"omega": 1e-6, "alpha": 1e-3}
+"""Shares of the largest rate: ten thousand and ten times what differences over 1e-6 leave."""
+FINEST = 321
+SMOOTHEST = 3
+"""The highest k that a probe tells."""
+RATES = ("no", "interior", "everywhere")
+"""Places of a constant rate, from fewest to most."""
+COLORS = {UNKNOWN: "#c8c8c8", HOLDS: "#8fd3bd", DEPARTS: "#d55e00"}
+"""By verdict, the gravest last; text is legible on all of them."""
+OTHERS = "other sayings"
+
+
+def cells(run: Run) -> list[dict[str, Any]]:
+    names = run.schemes if run.schemes is not None else [*found(), *works()]
+    return [{"scheme": name} for name in names]
+
+
+def measure_cell(run: Run, scheme: str) -> list[Row]:
+    if scheme not in found():
+        return [judged(claim) for claim in published(scheme)]
+    cls = found()[scheme].scheme
+    if cls is None:
+        unusable = Claim(scheme, "peer", "usable", True, unknown=found()[scheme].problem or "")
+        return [judged(unusable)]
+    claims = [*_of_class(run, cls), *published(scheme)]
+    return [judged(claim) | {"version": version(scheme)} for claim in claims]
+
+
+def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
+    columns = ["scheme", "source", "claim", "claimed", "measured", "verdict"]
+    return table.reindex(columns=[*columns, "case", "version", "failure"])
+
+
+# -- what a class claims ------------------------------------------------------------------------
+
+
+def _of_class(run: Run, cls: type[Curve]) -> Iterator[Claim]:
+    name = cls.name
+    publishes: Source = "ours" if cls.peer is None else "peer"
+    ours, theirs = partial(Claim, name, "ours"), partial(Claim, name, publishes)
+    met = partial(_meets, cls.interpolates)
+    yield theirs("interpolates", cls.interpolates, _misses(cls), met, float)
+    smooth = partial(operator.le, min(cls.continuity, SMOOTHEST))
+    for where, tried in _regimes(run, cls).items():
+        yield theirs(f"continuity, {where}", cls.continuity, tried, smooth, operator.neg)
+    yield ours("order", cls.order, [Probe(probes.order, name, FINEST)], partial(_near, cls.order))
+    shaped = "all" if cls.support is None else cls.support
+    yield ours("support", shaped, [Probe(probes.support, name)], partial(operator.eq, shaped))
+    spins = [Probe(probes.constant_rate, name, *case) for case in _spins(cls)]
+    steady = partial(_as_steady, cls.constant_rate)
+    yield ours("constant rate", cls.constant_rate, spins, steady, _unsteadiness)
+    yield from _of_input(cls)
+    for quantity, share in RATE.items():
+        off = [Probe(probes.rate_error, name, quantity, count) for count in (3, 4)]
+        right = partial(operator.ge, share)
+        yield theirs(f"published {quantity} is the curve's", "0 off", off, right, float)
+
+
+def _meets(claimed: bool, miss: float) -> bool:
+    return (miss <= MET) == claimed
+
+
+def _near(claimed: int, slope: float) -> bool:
+    return abs(slope - claimed) <= ORDER
+
+
+def _unsteadiness(place: str) -> int:
+    return -RATES.index(place)
+
+
+def _as_steady(claimed: str, place: str) -> bool:
+    return _unsteadiness(place) <= _unsteadiness(claimed)
+
+
+def _of_input(cls: type[Curve]) -> Iterator[Claim]:
+    ours = partial(Claim, cls.name, "ours")
+    asked = {
+        "takes uneven times": (cls.non_uniform, probes.takes_uneven_times),
+        "closes": (cls.closable, probes.closes),
+        "fewest keyframes": (cls.min_keyframes, probes.fewest_keyframes),
+    }
+    for text, (value, probe) in asked.items():
+        yield ours(text, value, [Probe(probe, cls.name)], partial(operator.eq, value))
+    if cls.peer is None:
+        report = [Probe(probes.reports_a_solve, cls.name)]
+        yield ours("iterative", cls.iterative, report, partial(operator.eq, cls.iterative))
+    else:
+        silent = "a library says nothing of its iterations"
+        yield ours("iterative", cls.iterative, unknown=silent)
+
+
+def _misses(cls: type[Curve]) -> list[Probe]:
+    hard = [(3, 60), (4, 170), *([(6, 170, True)] if cls.non_uniform else [])]
+    through = Probe(probes.miss_through_half_turn, cls.name)
+    return [through, *(Probe(probes.miss, cls.name, *case) for case in hard)]
+
+
+def _spins(cls: type[Curve]) -> list[tuple[Any, ...]]:
+    return [(50,), (110,), *([(50, True)] if cls.non_uniform else [])]
+
+
+def _regimes(run: Run, cls: type[Curve]) -> dict[str, list[Probe]]:
+    """Probes of continuity by step angle and kind of times, fewest keyframes first."""
+    angles, counts, seeds = ((60, 170), (4,), 1) if run.quick else ((60, 120, 170), (3, 4, 6), 3)
+    takes = (False, True) if cls.non_uniform else (False,)
+    return {
+        f"{degrees} degrees, {'uneven' if uneven else 'uniform'}": [
+            Probe(probes.continuity, cls.name, count, degrees, uneven, run.seed + seed)
+            for count in counts
+            for seed in range(seeds)
+        ]
+        for degrees in angles
+        for uneven in takes
+    }
+
+
+# -- figure -------------------------------------------------------------------------------------
+
+
+def draw(table: pd.DataFrame) -> Figure:
+    sayings = {claim.text for name in table["scheme"].unique() for claim in published(name)}
+    columns = [name for name in dict.fromkeys(table["claim"]) if name not in sayings]
+    named = table[table["claim"].isin(columns)]
+    verdicts = named.pivot(index="scheme", columns="claim", values="verdict")[columns]
+    texts = named.pivot(index="scheme", columns="claim", values="measured")[columns]
+    rest = table[~table["claim"].isin(columns)].groupby("scheme")["verdict"]
+    told = rest.agg(lambda found: f"{(found == DEPARTS).sum()}/{len(found)} depart")
+    verdicts[OTHERS] = rest.agg(lambda found: max(found, key=list(COLORS).index))
+    texts[OTHERS] = told
+    departs = (verdicts == DEPARTS).sum(axis=1).sort_values(kind="stable").index
+    fig, panels = style.axes(style.PAGE, ROW * len(verdicts) + 1.5)
+    _matrix(panels[0, 0], verdicts.loc[departs], texts.loc[departs])
+    return fig
+
+
+def _matrix(ax: Any, verdicts: pd.DataFrame, texts: pd.DataFrame) -> None:
+    codes = verdicts.apply(lambda column: column.map(list(COLORS).index, na_action="ignore"))
+    colors = mpl.colors.ListedColormap(list(COLORS.values()))
+    ax.imshow(codes.astype(float), cmap=colors, vmin=0, vmax=len(COLORS) - 1, aspect="auto")
+    label_cells(ax, texts.fillna(""), verdicts == DEPARTS)
+    heads = [str(name).replace(" degrees", "°") for name in verdicts]
+    heads = [name.replace(", ", "\n", 1).replace(" is the", "\nis the") for name in heads]
+    ax.set_xticks(range(verdicts.shape[1]), heads, fontsize=6, rotation=90)
+    ax.set_yticks(range(len(verdicts)), list(verdicts.index))
+    ax.tick_params(length=0, top=True, labeltop=True, bottom=False, labelbottom=False)
+    ax.grid(visible=False)
+
+
+def caption(table: pd.DataFrame) -> str:
+    counts = table["verdict"].value_counts()
+    parts = [f"{counts.get(verdict, 0)} {verdict}" for verdict in COLORS]
+    return (
+        f"Claims by verdict (red: departs, green: holds, grey: not measurable) with what was measured; of {len(table)} "
+        f"in all, {', '.join(parts)}. Continuity is claimed once and tried under several step angles and kinds of "
+        "times. Rows are sorted by departures; other sayings are those of publications and libraries about one scheme."
+    )

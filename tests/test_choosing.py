@@ -1,0 +1,201 @@
+"""Choosing: fronts by definition, decisions tied to cells, a table derived from those of a folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from quatspline import running
+from quatspline.experiment import Run, experiments, found
+from quatspline.registry import load
+from quatspline.report import choosing, style
+from quatspline.report.findings import findings, reader
+from quatspline.report.results import Results
+
+LESS = {"a": -1, "b": -1}
+
+
+@pytest.fixture
+def module():
+    return load(found()["choosing"], "experiment")
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """Small tables in which what is to be said is plain."""
+    results = Results(tmp_path)
+    names = ["slerp", "quartic", "local-quintic"]
+    fair = {"data": "committed", "scheme": names, "median": [np.inf, 1.6, 1.01]}
+    results.table("fairness", pd.DataFrame({**fair, "worst": [np.inf, 3.0, 1.1]}))
+    smooth = {"case": "60 degrees, uniform", "scheme": names, "measured_k": [0, 2, 2]}
+    results.table("continuity", pd.DataFrame(smooth))
+    costs = [
+        {"task": task, "size": size, "scheme": name, "exps": 1, "logs": 2, "slerps": 3}
+        | {"seconds_median": seconds * size}
+        for task, size in (("evaluation", 10_000), ("evaluation", 100), ("set-up", 1000))
+        for name, seconds in zip(names, (1e-9, 4e-9, 2e-9), strict=True)
+    ]
+    results.table("cost", pd.DataFrame(costs))
+    return tmp_path
+
+
+# -- fronts -------------------------------------------------------------------------------------
+
+
+def test_a_front_is_what_nothing_beats() -> None:
+    """Against the definition, row by row, on random whole numbers with ties."""
+    rng = np.random.default_rng(0)
+    table = pd.DataFrame(rng.integers(0, 5, (40, 2)), columns=["a", "b"])
+    marks = choosing.pareto(table, LESS)
+    for i, (a, b) in enumerate(table.to_numpy()):
+        others = table.to_numpy()
+        beaten = any((x <= a and y <= b and (x < a or y < b)) for x, y in others)
+        assert marks[i] == ("no" if beaten else "yes")
+
+
+def test_more_may_be_better_and_equals_stay_together() -> None:
+    table = pd.DataFrame({"a": [1.0, 1.0, 2.0], "b": [5.0, 5.0, 4.0]})
+    assert list(choosing.pareto(table, {"a": -1, "b": 1})) == ["yes", "yes", "no"]
+
+
+def test_what_is_unknown_is_neither_on_a_front_nor_off() -> None:
+    table = pd.DataFrame({"a": [1.0, np.nan, np.inf], "b": [5.0, 1.0, 1.0]})
+    assert list(choosing.pareto(table, LESS).isna()) == [False, True, False]
+    assert list(choosing.pareto(table, LESS).dropna()) == ["yes", "yes"]
+    assert choosing.pareto(table, {"c": 1}).isna().all()
+
+
+def test_orders_are_compared_as_whole_numbers() -> None:
+    table = pd.DataFrame({"order": [4.1, 3.9], "torque": [1.2, 1.1]})
+    assert list(choosing.pareto(table, {"torque": -1, "order": 1})) == ["no", "yes"]
+
+
+# -- decisions ----------------------------------------------------------------------------------
+
+
+def test_every_clause_points_at_a_cell() -> None:
+    table = pd.DataFrame(
+        {
+            "scheme": ["a", "b", "c"],
+            "passes_keys": ["yes", "yes", "no"],
+            "smooth_k": [2, 2, 2],
+            "smooth_k_worst": [2, 2, 2],
+            "support": ["all", "8", "8"],
+            "torque": [1.0, 1.2, 0.5],
+            "order": [4.0, np.nan, 4.0],
+        }
+    )
+    sentences = list(choosing.decisions(table))
+    local = sentences[0]
+    quotes = [part for part in local if not isinstance(part, str)]
+    assert [quote.source.column for quote in quotes] == ["scheme", "torque", "support"]
+    assert {quote.source.row["scheme"] for quote in quotes} == {"b"}
+    assert "torque energy 1.2 times" in "".join(map(str, local))
+    assert not any(
+        ch.isdigit() for part in local if isinstance(part, str) for ch in part.replace("C2", "")
+    )
+    assert str(sentences[1][1]) == "a"
+    assert "`choosing.csv[scheme=b]`, `torque`, `support`" in next(choosing.lines(table))
+
+
+def test_nothing_is_said_where_nothing_fits() -> None:
+    assert list(choosing.decisions(pd.DataFrame({"scheme": ["a"], "torque": [1.0]}))) == []
+    unfit = {"scheme": ["a"], "torque": [np.nan], "passes_keys": ["yes"]}
+    assert list(choosing.decisions(pd.DataFrame(unfit))) == []
+
+
+# -- the table ----------------------------------------------------------------------------------
+
+
+def test_derived_from_the_tables_that_are_there(module, folder: Path) -> None:
+    table = module.derive(Run(quick=True), reader(folder)).set_index("scheme")
+    assert list(table.columns) == module.COLUMNS[1:]
+    assert table.loc["quartic", "torque"] == 1.6
+    assert table.loc["quartic", "smooth_k_worst"] == 2
+    assert table.loc["quartic", "nanoseconds_per_sample"] == pytest.approx(4.0)
+    assert table.loc["quartic", "microseconds_per_keyframe"] == pytest.approx(4e-3)
+    assert table.loc["quartic", "times_fastest_sample"] == pytest.approx(4.0)
+    assert table.loc["quartic", "operations_sample"] == 1 + 2 + 2 * 3
+    missing = table["missing"].unique().item().split(", ")
+    assert missing == ["claims", "accuracy", "locality", "edge-cases", "convergence"]
+
+
+def test_only_schemes_asked_for(module, folder: Path) -> None:
+    table = module.derive(Run(quick=True, schemes=["slerp"]), reader(folder))
+    assert list(table["scheme"]) == ["slerp"]
+
+
+def test_an_empty_folder_is_told(module, tmp_path: Path) -> None:
+    with pytest.raises(
+        ValueError, match=r"claims, continuity, .* is in the folder: run them first"
+    ):
+        module.derive(Run(quick=True), reader(tmp_path))
+
+
+def test_counts_are_left_out_where_a_scheme_counts_other_things(module) -> None:
+    assert module._all_counted("quartic", "sample")
+    assert not module._all_counted("nlerp", "sample")  # square roots
+    assert not module._all_counted("min-torque", "keyframe")  # states none
+    assert not module._all_counted("no such scheme", "sample")
+
+
+def test_the_worst_failure_is_the_gravest(module) -> None:
+    edges = pd.DataFrame(
+        {
+            "scheme": ["a", "a", "a", "b", "c"],
+            "case": ["x", "y", "z", "x", "x"],
+            "result": ["wrong", "wrong", "NaN", "wrong", "error"],
+            "relative": [0.5, 2.0, np.nan, 0.25, np.nan],
+            "failure": [
+                None,
+                None,
+                "velocity is not a number",
+                None,
+                "ValueError: no closed curve",
+            ],
+        }
+    )
+    found = module._edge_cases(edges)["edges"]
+    assert found.to_dict() == {"a": "NaN: z", "b": "off by 0.25 of the step: x"}
+
+
+def test_the_best_method_of_a_scheme_counts(module) -> None:
+    base = {"scheme": "a", "keyframes": 5, "unevenness": 1.0}
+    rows = [
+        {**base, "method": "m", "step_degrees": 60, "share_converged": 0.5},
+        {**base, "method": "n", "step_degrees": 60, "share_converged": 1.0},
+        {**base, "method": "n", "step_degrees": 170, "share_converged": 0.25},
+    ]
+    told = module._convergence(pd.DataFrame(rows))["unsolved"]
+    assert told["a"] == "solves 25 %: 5 keyframes, 170 degrees, unevenness 1"
+
+
+def test_run_writes_table_decisions_and_figure(folder: Path) -> None:
+    assert running.run(["choosing"], out=folder) == []
+    text = (folder / "choosing.md").read_text(encoding="utf-8")
+    assert text.index("| scheme |") < text.index("## Decisions")
+    assert (folder / "choosing.svg").is_file()
+    before = (folder / "choosing.csv").read_bytes()
+    assert running.run(["choosing"], out=folder) == []
+    assert (folder / "choosing.csv").read_bytes() == before
+    said = [found for found in findings(reader(folder)) if found.topic == choosing.TABLE]
+    assert len(said) == text.count("- ") - text[: text.index("## Decisions")].count("- ")
+
+
+def test_derived_experiments_come_last() -> None:
+    assert experiments()[-1].name == "choosing"
+    assert [e.name for e in experiments(["choosing", "noise"])] == ["noise", "choosing"]
+
+
+def test_names_in_the_figure_keep_apart(module, folder: Path) -> None:
+    heights = module._spread(np.array([0.1, 0.1, 0.1, 0.99, 0.995]), 0.05)
+    assert np.diff(heights).min() >= 0.05 - 1e-12
+    assert heights[0] == pytest.approx(0.1)
+    assert heights[-1] <= 1.0
+    table = module.derive(Run(quick=True), reader(folder))
+    with style.house():
+        names = {text.get_text() for text in module.draw(table).axes[0].texts}
+    assert names == {"quartic", "local-quintic"}
