@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from quatspline import registry, sweeps
 from quatspline.experiment import Experiment, Run, experiments, fingerprint, found, reason
-from quatspline.report.findings import reader
 from quatspline.report.results import PAGE, Journal, Results, now
 
 if TYPE_CHECKING:
@@ -136,6 +135,8 @@ def _measured(name: str, module: ModuleType, run: Run, results: Results) -> Any:
     if callable(getattr(module, "measure", None)):
         return module.measure(run)
     if callable(getattr(module, "derive", None)):
+        from quatspline.report.findings import reader  # pandas: workers import this module, too
+
         return module.derive(run, reader(results.folder))
     raise TypeError(
         "no function measure(run), nor cells(run) and measure_cell(run, ...), nor derive(run, read), "
