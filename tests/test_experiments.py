@@ -19,7 +19,7 @@ from quatspline.instruments.timing import interleaved
 from quatspline.registry import load, scheme, shipped
 from quatspline.report import motions
 from quatspline.report.findings import findings, reader
-from quatspline.report.readme import REFERENCE, ROOT, renewed
+from quatspline.report.readme import QUOTING, REFERENCE, ROOT, renewed
 from quatspline.running import Run
 from quatspline.trajectories import search
 from quatspline.trajectories.paper import CASES, KEY, SOLVE, TEAPOT
@@ -188,8 +188,10 @@ def test_walks_are_reproducible_and_have_their_step():
 
 
 def test_readme_quotes_the_reference_tables():
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    assert renewed(text) == text
+    """Line by line: a scheme that somebody adds stands in no committed table yet."""
+    for file in QUOTING:
+        text = file.read_text(encoding="utf-8")
+        assert set(text.splitlines()) <= set(renewed(text).splitlines()), file
     assert len(findings(reader(REFERENCE))) >= 5
 
 
