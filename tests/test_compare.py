@@ -58,6 +58,8 @@ def test_closed_keyframes_and_what_does_not_apply() -> None:
 
 
 def test_bad_input_is_refused() -> None:
+    with pytest.raises(ValueError, match="schemes is empty"):
+        qs.compare(None, walk(5, 50.0, seed=1), [])
     with pytest.raises(ValueError, match=r"unknown scheme 'quartik'.*quartic"):
         qs.compare(None, walk(5, 50.0, seed=1), ["quartik"])
     with pytest.raises(ValueError, match="tracks"):
@@ -134,3 +136,7 @@ def test_the_edge_pack_never_shows_a_traceback(
     assert status in (0, 2)
     if status == 2:
         assert len(told.err.strip().splitlines()) == 1
+        return
+    table = pd.read_csv(tmp_path / "out" / "compare.csv")
+    assert table.set_index("scheme")["failure"].isna()["local-quintic"], told.out
+    assert told.out.startswith(("Take ", "No recommendation")), told.out

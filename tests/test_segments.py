@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 
 import quatspline as qs
 from quatspline.curve import Curve
 from quatspline.families.driver import BATCH, LONG
-from quatspline.families.segments import CHUNK, SegmentCurve
-from quatspline.families.segments import LONG as LONG_CURVE
+from quatspline.families.segments import CHUNK, LAZY, SegmentCurve
 from walks import apart, applies, walk
 
 ROUNDING = 1e-12
@@ -66,7 +67,7 @@ def _local(scheme: type[Curve]) -> bool:
 @applies(_local)
 def test_windows_of_a_long_curve_are_the_curve(scheme: type[Curve]) -> None:
     """A long curve is fitted where it is called: the same numbers as when it is fitted whole."""
-    count = LONG_CURVE + CHUNK // 2 + 3
+    count = LAZY + CHUNK // 2 + 3
     rng = np.random.default_rng(3)
     for closed in {False, scheme.closable}:
         h = rng.uniform(0.5, 2.0, count - 1 + closed) if scheme.non_uniform else np.ones(count)
@@ -86,8 +87,28 @@ def test_windows_of_a_long_curve_are_the_curve(scheme: type[Curve]) -> None:
             assert apart(lazy(t[:1] - 2 * period), whole(t[:1] - 2 * period)) < ROUNDING
 
 
+def test_a_long_curve_is_fitted_once_by_many_threads() -> None:
+    q = np.tile(walk(500, 40.0, seed=6), (2 * LAZY // 500, 1))
+    whole = qs.build("quartic", None, q)
+    t = np.random.default_rng(0).uniform(*whole.domain, (64, 5))
+    expected = np.array([whole(row) for row in t])
+    for _ in range(3):
+        shared = qs.build("quartic", None, q)
+        with ThreadPoolExecutor(8) as pool:
+            np.testing.assert_array_equal(np.array(list(pool.map(shared, t))), expected)
+
+
+def test_the_samples_own_memory_may_receive_the_result() -> None:
+    curve = qs.build("quartic", None, walk(30, 50.0, seed=2))
+    memory = np.zeros((3000, 4))
+    memory.reshape(-1)[:3000] = np.linspace(0.0, 29.0, 3000)
+    t = memory.reshape(-1)[:3000]
+    expected = curve(t.copy())
+    np.testing.assert_array_equal(curve(t, out=memory), expected)
+
+
 def test_a_long_curve_refuses_as_a_short_one() -> None:
-    curve = qs.build("quartic", None, walk(LONG_CURVE + 2, 40.0, seed=5))
+    curve = qs.build("quartic", None, walk(LAZY + 2, 40.0, seed=5))
     for t, message in (([1.0, np.nan], r"t\[1\] = nan"), ([2.0, -1.0], r"t\[1\] = -1.0")):
         with pytest.raises(ValueError, match=message):
             curve(t)

@@ -19,7 +19,7 @@ import os
 import re
 import tempfile
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
@@ -75,7 +75,7 @@ def _compiled_from(source: Path) -> set[Path]:
     while pending:
         path = pending.pop()
         seen.add(path)
-        for module in IMPORT.findall(path.read_text(encoding="utf-8")):
+        for module in _imported(path.read_text(encoding="utf-8")):
             found = package.joinpath(*module.split(".")[1:]).with_suffix(".py")
             if found not in seen and found.is_file() and "_jit import" in found.read_text("utf-8"):
                 pending.append(found)
@@ -83,6 +83,14 @@ def _compiled_from(source: Path) -> set[Path]:
 
 
 IMPORT = re.compile(r"^(?:from|import) (quatspline\.[\w.]+)", re.MULTILINE)
+MEMBERS = re.compile(r"^from quatspline import (.+)$", re.MULTILINE)
+
+
+def _imported(text: str) -> Iterator[str]:
+    """Names of this package's modules that a source imports, and of what may be one."""
+    yield from IMPORT.findall(text)
+    for members in MEMBERS.findall(text):
+        yield from (f"quatspline.{member.split()[0]}" for member in members.split(","))
 
 
 def _cached(function: Callable[..., Any], decorate: Callable[[], Any]) -> Any:
@@ -121,10 +129,11 @@ class Kernel:
     def address(self) -> int:
         """The address of the compiled function; compiles it, or loads it from the cache."""
         with _compiling:
-            self._compiled = _cached(
-                self.python,
-                lambda: numba.cfunc(self.signature, cache=True, **SETTINGS)(self.python),
-            )
+            if self._compiled is None:  # another thread may have been here first
+                self._compiled = _cached(
+                    self.python,
+                    lambda: numba.cfunc(self.signature, cache=True, **SETTINGS)(self.python),
+                )
         return int(self._compiled.address)
 
 

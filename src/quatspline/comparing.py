@@ -23,6 +23,7 @@ from quatspline.instruments.timing import interleaved
 from quatspline.instruments.trials import Row, attempted, facts
 from quatspline.keyframes import Keyframes
 from quatspline.options import declared
+from quatspline.quaternion import FloatArray
 from quatspline.registry import scheme, schemes
 
 if TYPE_CHECKING:
@@ -104,6 +105,8 @@ def _compared(keyframes: Keyframes, named: Sequence[str] | None) -> pd.DataFrame
     if keyframes.track_shape:
         raise ValueError(f"quaternions has {keyframes.track_shape} tracks: compare takes one")
     names = schemes() if named is None else [scheme(name).name for name in named]
+    if not names:
+        raise ValueError("schemes is empty: name at least one")
     rows: list[Row] = []
     curves: dict[str, Curve] = {}
     for name in Run(quick=True).progress(names, label="compare"):
@@ -113,8 +116,16 @@ def _compared(keyframes: Keyframes, named: Sequence[str] | None) -> pd.DataFrame
     for name, seconds in _timed(keyframes, curves).items():
         table.loc[table["scheme"] == name, list(seconds)] = list(seconds.values())
     for name in ENERGIES:
-        table[f"{name}_over_least"] = table[name] / table[name].min()
+        table[f"{name}_over_least"] = _over_least(table[name])
     return table.sort_values(["torque", "scheme"], na_position="last", ignore_index=True)
+
+
+def _over_least(values: pd.Series) -> pd.Series:
+    """Multiples of the least; where that is 0, 1 for it and infinity for all else."""
+    least = values.min()
+    if least > 0.0:
+        return values / least
+    return values.map({least: 1.0}).where(values.eq(least) | values.isna(), np.inf)
 
 
 COLUMNS = [
@@ -190,7 +201,7 @@ def _afford_samples(curve: Curve) -> None:
 
 def _refuse_beyond_budget(seconds: float) -> None:
     if seconds > BUDGET:
-        raise ValueError(f"over budget: might take {seconds:.0f} s; ask for it by name")
+        raise ValueError("over budget; ask for it by name")
 
 
 def _misses(curve: Curve) -> float:
@@ -200,11 +211,15 @@ def _misses(curve: Curve) -> float:
 
 
 def _timed(keyframes: Keyframes, curves: dict[str, Curve]) -> dict[str, dict[str, float]]:
-    """Seconds of set-up and of a sample, interleaved; slow calls are timed once."""
-    t = np.linspace(*next(iter(curves.values())).domain, 1000) if curves else np.empty(0)
+    """Seconds of set-up and of a sample, interleaved; slow calls are timed once.
+
+    Set-up includes a sample every thousand segments: long curves are fitted where they are called.
+    """
+    first, last = float(keyframes.times[0]), float(keyframes.times[-1])
+    t, sparse = np.linspace(first, last, 1000), keyframes.times[:-1:1000].copy()
     calls: dict[tuple[str, str], Callable[[], object]] = {}
     for name, curve in curves.items():
-        calls[name, "seconds_set_up"] = partial(_built, name, keyframes)
+        calls[name, "seconds_set_up"] = partial(_ready, name, keyframes, sparse)
         calls[name, "seconds_per_sample"] = partial(curve, t)
     once = {key: _elapsed(call) for key, call in calls.items()}
     quick = {"\t".join(key): repeated(calls[key]) for key, s in once.items() if s < SLOW}
@@ -216,6 +231,10 @@ def _timed(keyframes: Keyframes, curves: dict[str, Curve]) -> dict[str, dict[str
         name: {column: once[name, column] / size for column, size in scale.items()}
         for name in curves
     }
+
+
+def _ready(name: str, keyframes: Keyframes, t: FloatArray) -> None:
+    _built(name, keyframes)(t)
 
 
 def _elapsed(call: Callable[[], object]) -> float:

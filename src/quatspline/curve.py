@@ -291,12 +291,14 @@ class Curve(abc.ABC):
         if out is None:
             result = np.empty(shape)
             self._evaluate(samples, order, result.ravel(), threads)
-        elif _checked_out(out, shape).flags.c_contiguous:
+        elif _checked_out(out, shape).flags.c_contiguous and not np.may_share_memory(samples, out):
             result = out
             self._evaluate(samples, order, result.ravel(), threads)
         else:
             result = out
-            result[...] = self(samples, order, threads=threads)
+            result[...] = self(
+                samples, order, threads=threads
+            )  # strided, or the samples' own memory
         if order and frame == "world":
             result[...] = quaternion.rotate(self(t, threads=threads), result)
         return result

@@ -148,7 +148,8 @@ def _array(name: str, given: Any) -> FloatArray:
     if array.dtype.kind not in "iuf":
         kind = "complex" if array.dtype.kind == "c" else "not real numbers"
         raise ValueError(f"{name}: {kind} (dtype {array.dtype})")
-    return np.asarray(array, dtype=float, order="C")
+    array = np.asarray(array, dtype=float, order="C")
+    return array if array.flags.writeable else array.copy()  # one compiled signature serves all
 
 
 def _refuse_infinite(name: str, array: FloatArray) -> None:

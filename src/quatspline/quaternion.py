@@ -20,6 +20,7 @@ from quatspline._jit import compiled
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
 
 ANTIPODAL = 4 * np.finfo(float).eps
 """Quaternions whose sum is shorter than this have no shortest arc between them."""

@@ -8,6 +8,7 @@ outside the domain, and hands blocks of samples to the kernels, component first.
 
 from __future__ import annotations
 
+import threading
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import pairwise
@@ -19,14 +20,14 @@ from quatspline._jit import Kernel
 from quatspline.curve import WRONG_FIXED_POINT, Curve, SolveReport
 from quatspline.families.driver import described, fit_tracks, sample
 from quatspline.primitives import NEAR
-from quatspline.quaternion import FloatArray
+from quatspline.quaternion import BoolArray, FloatArray
 
 ITERATIONS, CHANGE, RESIDUAL, REACH = range(4)
 """Entries of a fit kernel's report."""
 
 CHUNK = 4096
 """Segments fitted at once where a call asks for a window of a long curve ..."""
-LONG = 4 * CHUNK
+LAZY = 4 * CHUNK
 """... which has more segments than this."""
 
 THREAD_MINIMUM = 20_000
@@ -54,8 +55,9 @@ class SegmentCurve(Curve):
 
     family: Family
     batched = True
-    _reach: FloatArray | None = None
-    """While a long curve is not wholly fitted: the reach of each chunk, NaN where it waits."""
+    _waiting: BoolArray | None = None
+    """While a long curve is not wholly fitted: which chunks wait."""
+    _fitting: threading.Lock
 
     def _solve(
         self, kernel: Kernel, parameters: FloatArray | None = None, *, whole: bool = False
@@ -73,8 +75,10 @@ class SegmentCurve(Curve):
         tracks, count = frames.tracks.shape[0], frames.spacings.shape[0]
         segments = np.empty((tracks, count, self.family.constants))
         report = np.zeros((tracks, 4))
-        if self.support is not None and count > LONG and not whole:
-            self._reach = np.full(-(-count // CHUNK), np.nan)
+        if self.support is not None and count > LAZY and not whole:
+            self._waiting = np.ones(-(-count // CHUNK), bool)
+            self._fitting = threading.Lock()
+            # Kernels for any angle, now and later: a value must not depend on what was called before.
             self._set_segments(segments, np.inf)
         else:
             self._fit_rows(frames.tracks, frames.spacings, frames.closed, segments, report)
@@ -96,20 +100,22 @@ class SegmentCurve(Curve):
 
     def _fit_window(self, t: FloatArray) -> None:
         """Fit the chunks of segments that samples t (m,) lie in, where that was not done before."""
-        assert self._reach is not None
         low, high = t.min() - self._first, t.max() - self._first
         inside = low >= 0.0 and high < self.segment_knots[-1]
         if self._keyframes.closed and not inside:
             low, high = 0.0, self.segment_knots[-1]
         first, last = np.searchsorted(self.segment_knots[1:-1], (low, high), "right") // CHUNK
-        for chunk in first + np.flatnonzero(np.isnan(self._reach[first : last + 1])):
-            self._reach[chunk] = self._fit_chunk(chunk * CHUNK)
-        if not np.isnan(self._reach).any():
-            self._set_segments(self.segments, self._reach.max(), self.segment_knots)
-            self._reach = None
+        with self._fitting:
+            if self._waiting is None:
+                return
+            for chunk in first + np.flatnonzero(self._waiting[first : last + 1]):
+                self._fit_chunk(chunk * CHUNK)
+                self._waiting[chunk] = False
+            if not self._waiting.any():
+                self._waiting = None
 
-    def _fit_chunk(self, start: int) -> float:
-        """Fit CHUNK segments from their keyframes and enough on either side; returns their reach."""
+    def _fit_chunk(self, start: int) -> None:
+        """Fit CHUNK segments from their keyframes and enough on either side."""
         frames, margin = self._keyframes, self.support or 0
         n, stop = frames.count, min(start + CHUNK, self.segments.shape[1])
         index = np.arange(start - margin, stop + margin + 1)
@@ -117,13 +123,12 @@ class SegmentCurve(Curve):
             index = index[(index >= 0) & (index < n)]
         tracks = frames.tracks[:, index % n]
         tracks *= (frames.signs[:, None] ** (index // n % 2))[..., None]  # keyframes of other turns
+        tracks.setflags(write=False)  # as those of the whole: one compiled signature serves both
         h = frames.spacings[index[:-1] % n]
         rows = np.empty((tracks.shape[0], h.size, self.family.constants))
-        report = np.zeros((tracks.shape[0], 4))
-        self._fit_rows(tracks, h, False, rows, report)
+        self._fit_rows(tracks, h, False, rows, np.zeros((tracks.shape[0], 4)))
         before = start - index[0]
         self.segments[:, start:stop] = rows[:, before : before + stop - start]
-        return float(report[:, REACH].max())
 
     def _set_segments(
         self, segments: FloatArray, reach: float, knots: FloatArray | None = None
@@ -133,8 +138,11 @@ class SegmentCurve(Curve):
         ``knots`` since the first keyframe, where segments are finer than keyframe intervals.
         """
         frames = self._keyframes
-        self.segments = segments
-        self.segment_knots = frames.knots if knots is None else knots
+        self.segments = segments = np.ascontiguousarray(segments, dtype=float)
+        self.segment_knots = np.ascontiguousarray(frames.knots if knots is None else knots)
+        shape = frames.tracks.shape[0], self.segment_knots.size - 1, self.family.constants
+        if segments.shape != shape:  # kernels read by address: a wrong shape would read elsewhere
+            raise ValueError(f"segments has shape {segments.shape}: expected {shape}")
         self.described = described(self.segment_knots, segments, frames.signs, frames.closed)
         self._first = float(frames.times[0])
         self.kernels = self.family.near if reach <= NEAR else self.family.far
@@ -159,7 +167,7 @@ class SegmentCurve(Curve):
 
     def _evaluate(self, samples: FloatArray, order: int, out: FloatArray, threads: int) -> None:
         t = samples.ravel()
-        if self._reach is not None and t.size:
+        if self._waiting is not None and t.size:
             self._fit_window(t)
         if threads == 1 or t.size < 2 * THREAD_MINIMUM:
             bad = self._sample(t, order, out, self._first)
@@ -197,9 +205,11 @@ class SegmentCurve(Curve):
         return self._inner(t, 2)
 
     def _inner(self, t: FloatArray, order: int) -> FloatArray:
-        if self._reach is not None and t.size:
+        if self._waiting is not None and t.size:
             self._fit_window(t + self._first)
         tracks, width = self._keyframes.tracks.shape[0], 3 if order else 4
         out = np.empty((t.size, tracks, width))
-        self._sample(np.array(t, dtype=float), order, out.reshape(-1), 0.0)
+        bad = self._sample(np.array(t, dtype=float), order, out.reshape(-1), 0.0)
+        if bad >= 0:
+            raise ValueError(f"t[{bad}] = {float(t[bad])!r}: outside the segments")
         return out[:, 0]

@@ -29,6 +29,10 @@ CURVES = 4
 """Schemes drawn over time."""
 SAMPLES = 2000
 ADVICE = "recommendation"
+PAPERS = "quartic"
+"""What a reader of the paper asks about."""
+FAMILIAR = (PAPERS, "squad", "nielson", "slerp")
+"""Curves that readers know, drawn beside the recommended one."""
 
 
 def recommendation(table: pd.DataFrame) -> list[Finding]:
@@ -49,8 +53,8 @@ def recommendation(table: pd.DataFrame) -> list[Finding]:
     quickest = str(pool.sort_values("seconds_per_sample").iloc[0]["scheme"])
     if quickest != best:
         found.append(_quickest(ledger, quickest, best))
-    paper = table[(table["scheme"] == "quartic") & table["failure"].isna()]
-    if best != "quartic" and len(paper):
+    paper = table[(table["scheme"] == PAPERS) & table["failure"].isna()]
+    if best != PAPERS and len(paper) and np.isfinite(paper["torque"]).all():
         found.append(_paper(ledger))
     return found
 
@@ -120,14 +124,14 @@ def _paper(ledger: Ledger) -> Finding:
         "The paper's quartic has {torque:.3f} times the least torque here and a peak acceleration of {peak:.3f} times "
         "the least."
     )
-    torque, peak = (_cell(ledger, "quartic", f"{name}_over_least") for name in ("torque", "peak"))
+    torque, peak = (_cell(ledger, PAPERS, f"{name}_over_least") for name in ("torque", "peak"))
     return Finding(ADVICE, said(text, torque=torque, peak=peak))
 
 
 def lines(found: list[Finding]) -> Iterator[str]:
     """The advice as plain lines."""
     if not found:
-        yield "No scheme passes through these keyframes with a continuous velocity."
+        yield "No recommendation: no scheme compared passes through these keyframes with a continuous velocity."
     for finding in found:
         yield finding.text
 
@@ -143,7 +147,7 @@ def shown(table: pd.DataFrame) -> list[str]:
     names = [_best(pool)] if len(pool) else []
     names += [str(pool.iloc[0]["scheme"])] if len(pool) else []
     usable = set(table.loc[table["failure"].isna(), "scheme"])
-    names += [name for name in ("quartic", "squad", "nielson", "slerp") if name in usable]
+    names += [name for name in FAMILIAR if name in usable]
     names += [str(name) for name in table.loc[table["failure"].isna(), "scheme"]]
     return list(dict.fromkeys(names))[:CURVES]
 
