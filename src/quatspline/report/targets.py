@@ -1,10 +1,14 @@
-"""What the speed table is held against: a bound, the measured value, and whether it was met."""
+"""What the speed table is held against: a bound, the measured value, and whether it was met.
+
+A target whose cells are missing or hold no number stays in the list, with the reason.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 
 from quatspline.report.quotes import Ledger, Reader
 
@@ -24,24 +28,37 @@ class Target:
 
 @dataclass(frozen=True)
 class Verdict:
-    """A target with what was measured."""
+    """A target with what was measured, or the reason why nothing was (then ``value`` is None)."""
 
     target: Target
-    value: float
+    value: float | None
+    failure: str | None = None
 
     @property
     def met(self) -> bool:
-        """Whether the measured value keeps the bound."""
+        """Whether a value was measured and keeps the bound."""
+        if self.value is None:
+            return False
         bound = self.target.bound
         return self.value >= bound if self.target.at_least else self.value <= bound
 
+    def __str__(self) -> str:
+        if self.value is None:
+            return f"not measured: {self.failure}"
+        return "met" if self.met else "**falls short**"
 
-def _each(cell: Ledger, task: str, scheme: str) -> float:
-    return float(cell("speed", "nanoseconds_per_item", task=task, scheme=scheme).value)
+
+def _number(column: str, cell: Ledger, task: str, scheme: str) -> float:
+    value = float(cell("speed", column, task=task, scheme=scheme).value)
+    if math.isfinite(value):
+        return value
+    why = cell("speed", "failure", task=task, scheme=scheme).value
+    raise LookupError(f"{scheme}, {task}: {why}")
 
 
-def _seconds(cell: Ledger, task: str, scheme: str) -> float:
-    return float(cell("speed", "seconds_median", task=task, scheme=scheme).value)
+_each = partial(_number, "nanoseconds_per_item")
+_seconds = partial(_number, "seconds_median")
+_times_fill = partial(_number, "times_fill")
 
 
 def _faster(task: str, scheme: str, *peers: str) -> Callable[[Ledger], float]:
@@ -65,7 +82,7 @@ TARGETS: tuple[Target, ...] = (
         6.0,
         False,
         "x",
-        lambda cell: float(cell("speed", "times_fill", task="evaluate", scheme="quartic").value),
+        lambda cell: _times_fill(cell, "evaluate", "quartic"),
     ),
     Target(
         f"the same over `{ROTATION_SPLINE}`",
@@ -126,21 +143,26 @@ TARGETS: tuple[Target, ...] = (
 
 
 def verdicts(read: Reader) -> list[Verdict]:
-    """All targets with what a folder of tables says; none where speed was not measured in full."""
-    found = []
-    for target in TARGETS:
-        with suppress(FileNotFoundError, LookupError):
-            found.append(Verdict(target, target.value(Ledger(read))))
-    return found
+    """All targets with what a folder of tables says of them."""
+    return [_verdict(target, read) for target in TARGETS]
+
+
+def _verdict(target: Target, read: Reader) -> Verdict:
+    try:
+        return Verdict(target, target.value(Ledger(read)))
+    except FileNotFoundError:
+        return Verdict(target, None, "there is no table of speed")
+    except LookupError as error:  # a row, a column or a number that the table lacks
+        return Verdict(target, None, " ".join(str(error.args[0]).split()))
 
 
 def markdown(read: Reader) -> str:
-    """The verdicts as a Markdown table; one that falls short says so."""
+    """The verdicts as a Markdown table; one that falls short or was not measured says so."""
     lines = ["| | bound | measured | |", "| --- | ---: | ---: | --- |"]
     for verdict in verdicts(read):
         target = verdict.target
         sense = "≥" if target.at_least else "≤"
-        word = "met" if verdict.met else "**falls short**"
         bound = f"{sense} {target.bound:g} {target.unit}"
-        lines.append(f"| {target.text} | {bound} | {verdict.value:.3g} {target.unit} | {word} |")
+        value = "" if verdict.value is None else f"{verdict.value:.3g} {target.unit}"
+        lines.append(f"| {target.text} | {bound} | {value} | {verdict} |")
     return "\n".join(lines)

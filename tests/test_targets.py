@@ -1,0 +1,80 @@
+"""The speed targets on speed tables made by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from quatspline.report import targets
+from quatspline.report.targets import ROTATION_SPLINE, Verdict
+
+FILL = "`quartic`, a million sorted samples, over `out.fill` on the same output"
+PEER = f"set-up of `kim` to 1e-9 over `{ROTATION_SPLINE}`"
+IMPORT = "`import quatspline` after `import numpy`"
+
+
+def table(fill: float = 5.0, peer: float = 1200.0, failure: str | None = None) -> pd.DataFrame:
+    """A speed table with the rows that three targets need."""
+    rows = [
+        {"task": "evaluate", "scheme": "quartic", "nanoseconds_per_item": 9.0, "times_fill": fill},
+        {"task": "set-up", "scheme": "kim", "nanoseconds_per_item": 100.0},
+        {"task": "set-up", "scheme": ROTATION_SPLINE, "nanoseconds_per_item": peer},
+        {"task": "start", "scheme": "import quatspline", "seconds_median": 0.1},
+    ]
+    rows[2]["failure"] = failure
+    return pd.DataFrame(rows)
+
+
+def judged(speed: pd.DataFrame) -> dict[str, Verdict]:
+    return {verdict.target.text: verdict for verdict in targets.verdicts(lambda name: speed)}
+
+
+@pytest.mark.parametrize(("fill", "met"), [(5.0, True), (6.0, True), (6.1, False)])
+def test_a_value_is_to_stay_at_or_below_its_bound(fill, met):
+    verdict = judged(table(fill=fill))[FILL]
+    assert verdict.value == fill
+    assert verdict.met is met
+    assert str(verdict) == ("met" if met else "**falls short**")
+
+
+@pytest.mark.parametrize(("peer", "met"), [(1200.0, True), (1000.0, True), (990.0, False)])
+def test_a_ratio_is_to_reach_its_bound(peer, met):
+    verdict = judged(table(peer=peer))[PEER]
+    assert verdict.value == pytest.approx(peer / 100.0)
+    assert verdict.met is met
+
+
+def test_every_target_has_a_verdict():
+    found = [verdict.target for verdict in targets.verdicts(lambda name: table())]
+    assert tuple(found) == targets.TARGETS
+    missing = judged(table())["one sample of `quartic`"]
+    assert missing.value is None
+    assert not missing.met
+    assert str(missing).startswith("not measured: speed: 0 rows match")
+
+
+def test_a_row_without_a_number_gives_its_reason():
+    verdict = judged(table(peer=np.nan, failure="over budget"))[PEER]
+    assert verdict.value is None
+    assert str(verdict) == f"not measured: {ROTATION_SPLINE}, set-up: over budget"
+
+
+def test_a_lacking_column_is_named():
+    assert str(judged(table().drop(columns="times_fill"))[FILL]) == "not measured: times_fill"
+
+
+def test_without_a_table_nothing_is_measured():
+    def read(name: str) -> pd.DataFrame:
+        raise FileNotFoundError(name)
+
+    assert {str(v) for v in targets.verdicts(read)} == {"not measured: there is no table of speed"}
+
+
+def test_the_markdown_says_all_three():
+    lines = targets.markdown(lambda name: table(fill=7.0)).splitlines()
+    assert len(lines) == 2 + len(targets.TARGETS)
+    assert f"| {FILL} | ≤ 6 x | 7 x | **falls short** |" in lines
+    assert f"| {PEER} | ≥ 10 x | 12 x | met |" in lines
+    assert f"| {IMPORT} | ≤ 0.1 s | 0.1 s | met |" in lines
+    assert sum("| not measured: " in line for line in lines) == len(targets.TARGETS) - 3
