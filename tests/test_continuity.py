@@ -140,6 +140,21 @@ def test_a_leap_inside_a_segment_is_found(size, k):
     assert table.loc[0, "jump"] == pytest.approx(size, abs=1e-9)
 
 
+def test_a_leap_in_a_slow_segment_of_a_fast_curve_is_found():
+    """5 degrees at t = 10.3, where the curve turns by a degree a segment, and by 60 in all others."""
+    leap, slow, fast = np.radians([5.0, 1.0, 60.0])
+
+    class Uneven(Turn):
+        def theta(self, t):
+            inside = np.clip(t - 10.0, 0.0, 1.0)
+            angle = fast * (t - inside) + slow * inside + leap * (t > 10.3)
+            return 0.5 * angle, 0.5 * fast + 0.0 * t, 0.0 * t
+
+    table = jumps(turned(Uneven, np.arange(21.0)), orders=(0,))
+    assert table.loc[0, "jump"] == pytest.approx(leap, abs=1e-9)
+    assert measured_continuity(table) == -1
+
+
 class _Stops(Turn):
     """3 u^2 - 2 u^3 on every unit segment: at rest at keyframes, 1.5 times the mean speed between."""
 
@@ -153,6 +168,12 @@ def test_a_stop_at_every_keyframe_is_seen():
     measured = speeds(turned(_Stops, np.arange(6.0)))
     assert measured["least_key_speed"] == 0.0
     assert measured["peak_speed"] == pytest.approx(1.5, rel=0.02)
+
+
+@pytest.mark.parametrize("name", ["slerp", "quartic", "kim", "local-quintic"])
+def test_a_motion_at_rest_has_no_shares_of_its_speed(name):
+    rest = np.tile([0.5, 0.5, 0.5, 0.5], (6, 1))
+    assert all(np.isnan(share) for share in speeds(scheme(name)(None, rest)).values())
 
 
 KNOWN = [

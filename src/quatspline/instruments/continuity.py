@@ -19,7 +19,7 @@ from quatspline import quaternion
 from quatspline.curve import Curve
 from quatspline.instruments.derivatives import closed_forms, one_sided, shape_rates
 from quatspline.instruments.trials import Row
-from quatspline.quaternion import FloatArray
+from quatspline.quaternion import FloatArray, IntArray
 
 QUANTITIES = ("q", "omega", "alpha", "jerk")
 UNITS = ("1", "rad/t", "rad/t^2", "rad/t^3")
@@ -40,9 +40,14 @@ FALLING = 0.05
 DENSE = 7
 """Samples a segment for the size of a quantity."""
 
+SUSPECTS = 16
+"""Intervals between samples searched for a leap: those that change most against their neighbours."""
 HALVINGS, GAP = 30, 1e-6
 """Of an interval between samples, and the angle in rad above which what is left is a jump: nothing that a
 curve turns by in 1e-10 of a segment."""
+
+AT_REST = 1e-12
+"""A motion that turns by less in all, in rad, is at rest: what is left is rounding."""
 
 
 def jumps(curve: Curve, orders: Sequence[int] = (0, 1, 2, 3)) -> pd.DataFrame:
@@ -78,12 +83,15 @@ def measured_continuity(table: pd.DataFrame) -> int:
 def speeds(curve: Curve) -> Row:
     """Least speed at inner keyframes and peak speed, as shares of the mean speed.
 
-    A curve that stops at every keyframe is smooth cheaply: the first is then 0.
+    A curve that stops at every keyframe is smooth cheaply: the first is then 0.  Both are NaN where the
+    motion rests throughout, the first also without inner keyframes.
     """
     at, _ = _inner_knots(curve)
     dense = _dense(curve)
     speed, at_keys = (np.linalg.norm(shape_rates(curve, t)[0], axis=-1) for t in (dense, at))
     mean = float(speed.mean())
+    if mean * float(curve.times[-1] - curve.times[0]) <= AT_REST:
+        return {"least_key_speed": np.nan, "peak_speed": np.nan}
     least = float(at_keys.min()) / mean if at.size else np.nan
     return {"least_key_speed": least, "peak_speed": float(speed.max()) / mean}
 
@@ -121,20 +129,28 @@ def _sizes(curve: Curve) -> list[float]:
 
 
 def _gap(curve: Curve) -> float:
-    """The angle of a jump of the orientation inside segments, 0 without one.
+    """The angle of the largest jump of the orientation inside segments, 0 without one.
 
-    The interval of the largest change is halved until only a jump can be left of it.
+    Suspect intervals are halved, towards the larger change, until only a jump can be left of them.
     """
     t = _dense(curve)
-    change = quaternion.distance(curve(t[1:]), curve(t[:-1]))
-    lo, hi = t[np.argmax(change)], t[np.argmax(change) + 1]
+    suspects = _suspects(quaternion.distance(curve(t[1:]), curve(t[:-1])))
+    lo, hi = t[suspects], t[suspects + 1]
     for _ in range(HALVINGS):
         middle = 0.5 * (lo + hi)
-        q = curve(np.array([lo, middle, hi]))
-        first, second = quaternion.distance(q[1:], q[:-1])
-        lo, hi = (lo, middle) if first > second else (middle, hi)
-    left = float(quaternion.distance(curve(lo), curve(hi)))
-    return left if left > GAP else 0.0
+        ends, inner = curve(np.stack([lo, hi])), curve(middle)
+        left = quaternion.distance(ends[0], inner) > quaternion.distance(inner, ends[1])
+        lo, hi = np.where(left, lo, middle), np.where(left, middle, hi)
+    gap = float(quaternion.distance(curve(lo), curve(hi)).max())
+    return gap if gap > GAP else 0.0
+
+
+def _suspects(change: FloatArray) -> IntArray:
+    """Intervals that may hold a leap: the one of the largest change, which hides a leap in a fast segment,
+    and those that change most against their neighbours, as a leap in a slow one does."""
+    around = np.pad(change, 1, mode="reflect")
+    relative = change / (around[:-2] + around[2:] + GAP)
+    return np.unique(np.append(np.argsort(relative)[-SUSPECTS:], np.argmax(change)))
 
 
 def _floor(curve: Curve, order: int, size: float) -> float:
