@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from quatspline.instruments.speed import FLOORS, Task, contender_of, tasks
+from quatspline.instruments.timing import OverBudget
 from quatspline.registry import schemes, version
 
 SEED = 0
@@ -31,7 +32,7 @@ def test_speed(benchmark: Any, task: str, name: str) -> None:
     benchmark.group = f"{task}, {chosen.keyframes:,} keyframes"
     try:
         contender, items = contender_of(chosen, name)
-    except ValueError as reason:  # what a scheme lacks
+    except (ValueError, OverBudget) as reason:  # what a scheme lacks
         pytest.skip(str(reason))
     benchmark.extra_info |= {"items": items, "unit": chosen.unit}
     if name not in FLOORS:

@@ -18,6 +18,7 @@ from quatspline.instruments.convergence import (
     solved,
     theoretical_rate,
 )
+from quatspline.instruments.trials import reason
 from quatspline.quaternion import FloatArray
 from quatspline.report import style
 from quatspline.running import Run
@@ -99,7 +100,7 @@ def measure_cell(
             row |= _solves(run, cls, method, grids, q)
         return row | _jumps(run, cls, method, grids, q)
     except Exception as error:  # what does not apply is a row with its reason
-        return row | {"failure": f"{type(error).__name__}: {error}"}
+        return row | {"failure": reason(error)}
 
 
 def _sets(run: Run, keyframes: int) -> int:

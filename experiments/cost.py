@@ -21,9 +21,12 @@ SERIAL = True
 KEYS = ["task", "size", "scheme"]
 BUDGET, BUDGET_QUICK = 5.0, 0.1
 KEYFRAMES = 100
+SPREAD = 1000
+"""Segments between samples in set-up: fewer than are fitted at once, so that every segment is fitted."""
 NOTE = (
     "Public calls, validation included, one thread, on a smooth motion, times 0, 1, 2, ... . set-up: the curve "
-    f"through size keyframes. evaluation: orientations at size times in order, {KEYFRAMES} keyframes. one sample: a "
+    f"through size keyframes and, beyond {SPREAD}, a sample every {SPREAD} segments, so that all of a long curve is "
+    f"fitted. evaluation: orientations at size times in order, {KEYFRAMES} keyframes. one sample: a "
     "call with a scalar time, size keyframes. seconds_* are medians and interquartile ranges of interleaved rounds, "
     "a single call where it is slow. A call that, by smaller ones, would take over "
     f"{BUDGET:g} s ({BUDGET_QUICK:g} s at quick size) is over budget. times_fastest is the time over the "
@@ -82,10 +85,16 @@ def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
 
 
 def _setup(cls: type[Curve]) -> Task:
+    """The constructor and, where there are many keyframes, samples spread over all of them: a long curve
+    of a local scheme is fitted only where it is called, and its constructor alone times nothing."""
+
     def prepare(count: int) -> Call:
         t = np.arange(float(count))
         q = tumble(t)
-        return lambda: cls(t, q)
+        if count <= SPREAD:
+            return lambda: cls(t, q)
+        at = np.linspace(t[0], t[-1], 1 + -(-count // SPREAD))
+        return lambda: cls(t, q)(at)
 
     return prepare
 

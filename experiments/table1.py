@@ -9,6 +9,7 @@ import pandas as pd
 from quatspline.curve import Curve
 from quatspline.instruments.protocols import PROTOCOLS, Protocol, frames
 from quatspline.instruments.timing import Contender, interleaved
+from quatspline.instruments.trials import reason
 from quatspline.options import declared
 from quatspline.registry import scheme
 from quatspline.running import Run
@@ -67,7 +68,7 @@ def _group(
             generators[name] = frames(scheme(name), case.keyframes(), t, protocol, **_options(name))
         except Exception as error:  # what does not apply or fails is a row with its reason
             base = {"case": case.name, "frames": row.frames, "protocol": protocol, "scheme": name}
-            failures.append(base | {"failure": f"{type(error).__name__}: {error}"})
+            failures.append(base | {"failure": reason(error)})
     if row.rendered:
         generators = {name: _rendering(case, t, g) for name, g in generators.items()}
     timed = _timed(run, case.name, case, row, protocol, generators)

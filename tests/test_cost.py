@@ -9,9 +9,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from quatspline.instruments import cost
+from quatspline.curve import Curve
+from quatspline.families.segments import LAZY
+from quatspline.instruments import cost, speed
 from quatspline.registry import load, scheme, shipped
 from quatspline.running import Run
+from quatspline.trajectories.walks import walk
 
 AMPLE = 600.0
 """A budget in seconds that no hiccup of a busy machine exceeds."""
@@ -144,3 +147,42 @@ def test_a_scheme_that_fails_is_a_row_of_the_table(monkeypatch):
     rows = {row["scheme"]: row for row in module.measure_cell(run, "evaluation", 10)}
     assert rows["quartic"]["failure"] == "ValueError: not today"
     assert rows["slerp"]["failure"] is None
+
+
+@pytest.mark.parametrize("count", [LAZY + 2, 20_000])
+def test_set_up_fits_all_of_a_long_curve(monkeypatch, count):
+    """A long curve waits for calls; what is timed must not."""
+    module = load(shipped("experiments") / "cost.py", "experiment")
+    made: list[Curve] = []
+    cls = scheme("slerp")
+    fit = cls._fit
+    monkeypatch.setattr(
+        cls, "_fit", lambda self, *given, **more: (made.append(self), fit(self, *given, **more))[1]
+    )
+    module.TASKS["set-up"](cls)(count)()
+    assert len(made) == 1
+    assert made[0].segments.shape[1] > LAZY
+    assert made[0]._waiting is None
+
+
+def test_what_a_scheme_raises_stands_on_one_line():
+    def task(size: int) -> cost.Call:
+        raise ValueError("not\ntoday")
+
+    found = cost.costs({"a": task}, 10, budget=1.0, rounds=1, duration=0.01)
+    assert found["a"].failure == "ValueError: not today"
+
+
+def test_over_budget_by_a_clock_carries_no_seconds(clock, monkeypatch):
+    """The table of two runs may differ in timing columns alone."""
+    peer = scheme("scipy-slerp")
+    made = peer.__init__
+
+    def slow(self, *given, **more):
+        made(self, *given, **more)
+        clock[0] += 1.0
+
+    monkeypatch.setattr(peer, "__init__", slow)
+    keyframes = walk(np.random.default_rng(0), 10 * speed.FEW, 20.0)[:, 0]
+    row = next(speed.measured(speed._setup("set-up", keyframes), ["scipy-slerp"], 1))
+    assert row == speed.Row("scipy-slerp", failure="over budget")

@@ -15,7 +15,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from quatspline.curve import Curve
-from quatspline.instruments.timing import Contender, interleaved
+from quatspline.instruments.timing import Contender, OverBudget, interleaved, repeated
+from quatspline.instruments.trials import reason
 
 Call = Callable[[], object]
 Task = Callable[[int], Call]
@@ -27,10 +28,6 @@ SLOW = 0.05
 """Calls that take this share of the budget are timed once: rounds of them would exceed it."""
 
 OPERATIONS = ("exps", "logs", "slerps")
-
-
-class OverBudget(Exception):
-    """A call that would take longer than the budget."""
 
 
 @dataclass(frozen=True)
@@ -65,15 +62,15 @@ def costs(
         try:
             expected = predicted(task, size, least, budget)
             call = task(size)
-        except OverBudget:
-            found[name] = Cost(failure="over budget")
+        except OverBudget as error:
+            found[name] = Cost(failure=str(error))
         except Exception as error:  # a scheme that does not apply or fails is a row with its reason
-            found[name] = Cost(failure=f"{type(error).__name__}: {error}")
+            found[name] = Cost(failure=reason(error))
         else:
             if expected > SLOW * budget:
                 found[name] = Cost(_seconds(call), rounds=1)
             else:
-                fast[name] = _repeated(call)
+                fast[name] = repeated(call)
     for name, timing in interleaved(fast, rounds, seed, duration).items():
         found[name] = Cost(timing.median, timing.iqr, timing.rounds)
     return found
@@ -154,14 +151,6 @@ def _seconds(call: Call) -> float:
     start = time.perf_counter()
     call()
     return time.perf_counter() - start
-
-
-def _repeated(call: Call) -> Contender:
-    def contender(loops: int) -> None:
-        for _ in range(loops):
-            call()
-
-    return contender
 
 
 def _status(field: str) -> float:

@@ -19,7 +19,15 @@ from typing import Any
 import numpy as np
 
 from quatspline.curve import Curve
-from quatspline.instruments.timing import LEAST, Contender, Timing, interleaved
+from quatspline.instruments.timing import (
+    LEAST,
+    Contender,
+    OverBudget,
+    Timing,
+    interleaved,
+    repeated,
+)
+from quatspline.instruments.trials import reason
 from quatspline.options import declared
 from quatspline.quaternion import FloatArray
 from quatspline.registry import scheme
@@ -80,8 +88,10 @@ def measured(
     for name in (*FLOORS, *names):
         try:
             made[name], items[name] = contender_of(task, name)
+        except OverBudget as error:
+            yield Row(name, failure=str(error))
         except Exception as error:  # what does not apply is a row with its reason
-            yield Row(name, failure=f"{type(error).__name__}: {error}")
+            yield Row(name, failure=reason(error))
     for name, timing in interleaved(made, rounds, seed, least).items():
         yield Row(name, items[name], timing)
 
@@ -125,16 +135,6 @@ def _affordable(task: Task, make: Callable[[int], Contender]) -> int:
         few = min(10 * few, task.items)
 
 
-def repeated(call: Callable[[], object]) -> Contender:
-    """A contender that repeats a call."""
-
-    def contender(repeats: int) -> None:
-        for _ in range(repeats):
-            call()
-
-    return contender
-
-
 # -- tasks ---------------------------------------------------------------------------------------
 
 
@@ -174,13 +174,13 @@ def _curve(name: str, keyframes: FloatArray) -> Curve:
     cls = scheme(name)
     limit = cls.practical_keyframes
     if limit is not None and len(keyframes) > limit:
-        raise ValueError(f"over budget beyond {limit} keyframes")
+        raise OverBudget(f"over budget beyond {limit} keyframes")
     if cls.peer is not None and len(keyframes) > FEW:  # the cost may grow with the square
         start = time.perf_counter()
         cls(None, keyframes[:FEW])
         seconds = (time.perf_counter() - start) * (len(keyframes) / FEW) ** 2
         if seconds > BUDGET:
-            raise ValueError(f"over budget: its set-up might take {seconds:.0f} s")
+            raise OverBudget
     return cls(None, keyframes, **_options(name))
 
 
@@ -242,7 +242,7 @@ def _long(name: str, keyframes: FloatArray) -> Task:
     def work(who: str) -> Callable[[int], Contender]:
         cls, options = scheme(who), _options(who)
         if cls.peer is not None or cls.practical_keyframes is not None:
-            raise ValueError("over budget")
+            raise OverBudget
         return lambda items: repeated(lambda: cls(None, keyframes, **options)(t))
 
     return Task(name, "keyframe", len(keyframes), len(keyframes), 4, work)
