@@ -167,6 +167,8 @@ def test_list_imports_no_table_no_figure(desk: Desk) -> None:
         (["run", "missing"], "unknown experiment 'missing'"),
         (["run", "erors"], "unknown experiment 'erors': did you mean 'errors'?"),
         (["run", "errors", "--schemes", "quartik"], "did you mean 'quartic'?"),
+        (["run", "errors", "--schemes", ","], "--schemes: no name given"),
+        (["compare", "k.csv", "--schemes", "", ","], "--schemes: no name given"),
         (["run", "errors", "--schemes", "broken"], "scheme 'broken' cannot be used"),
         (["run", "errors", "--out", "k.csv"], "no such folder can be made"),
         (["sample", "k.csv", "--scheme", "stairs"], "one of the arguments --rate --count"),
@@ -598,3 +600,11 @@ def test_a_run_can_be_called_from_python(desk: Desk, monkeypatch: pytest.MonkeyP
     assert running.run(["errors"], out=desk.folder / "out", size="full") == []
     table = pd.read_csv(desk.folder / "out" / "errors.csv")
     assert table["scheme"].tolist() == ["a", "b"]
+
+
+def test_a_run_of_no_schemes_is_refused(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    desk.experiment("errors")
+    monkeypatch.setenv("QUATSPLINE_EXPERIMENTS", str(desk.folder / "experiments"))
+    with pytest.raises(ValueError, match=r"^schemes: no name given$"):
+        running.run(["errors"], schemes=[], out=desk.folder / "out")
+    assert not (desk.folder / "out").exists()

@@ -30,6 +30,13 @@ def cells(run):
     return [{{"x": x, "name": f"n{{x}}"}} for x in reversed(range({count}))]
 
 
+def hold(until):
+    end = time.monotonic() + 60.0
+    while not until():
+        assert time.monotonic() < end, "held in vain"
+        time.sleep(0.01)
+
+
 def measure_cell(run, x, name):
     with open(HERE / "measured", "a") as log:
         log.write(f"{{x}} {{os.getpid()}}\\n")
@@ -146,11 +153,13 @@ def test_workers_find_folders_named_after_they_started(
 
 STOP = "if x == 3 and not (HERE / 'on').exists(): (HERE / 'on').touch(); {how}"
 """The cell that stops a run, the first time it is measured."""
+KEPT = "lambda: (HERE / 'results/.cells/swept.jsonl').read_bytes().count(b'\\n') > 1"
+"""Whether a cell is kept, as a cell sees it."""
 
 
 @pytest.mark.parametrize("serial", [True, False])
 def test_an_interrupted_sweep_goes_on_at_the_cell(bench: Bench, serial: bool) -> None:
-    bench.experiment(STOP.format(how="raise KeyboardInterrupt"), serial)
+    bench.experiment(STOP.format(how=f"hold({KEPT}); raise KeyboardInterrupt"), serial)
     with pytest.raises(KeyboardInterrupt):
         bench.run(jobs=2)
     kept = bench.kept()
@@ -186,13 +195,38 @@ def test_a_worker_that_dies_once_costs_its_cell_alone(bench: Bench) -> None:
     assert max(bench.measured().values()) == 2
 
 
-def test_a_cell_that_kills_its_worker_is_told_and_the_others_are_kept(bench: Bench) -> None:
-    bench.experiment("if x == 3: os.kill(os.getpid(), signal.SIGKILL)")
-    assert bench.run(jobs=2) == ["swept"]
-    failure = json.loads((bench.out / "manifest.json").read_text())["experiments"]["swept"]
-    assert "a worker died" in failure["failure"]
-    assert '"x": 3' in failure["failure"]
+KILLER = """log = lambda: (HERE / "measured").read_text()
+    if x == 2: hold(lambda: log().count("3 ") == 2); time.sleep(0.5)
+    if x == 3: hold(lambda: "\\n2 " in log())
+    if x == 3: os.kill(os.getpid(), signal.SIGKILL)"""
+"""The cell that always kills its worker, first with another beside it, which it takes along."""
+
+
+def killed(bench: Bench) -> str:
+    """The failure of a sweep with that cell, all other cells of which are kept."""
     assert bench.kept() == COUNT - 1
+    text = (bench.out / "manifest.json").read_text()
+    return json.loads(text)["experiments"]["swept"]["failure"]
+
+
+def test_a_cell_that_kills_its_worker_is_told_and_the_others_are_kept(bench: Bench) -> None:
+    bench.experiment(KILLER)
+    assert bench.run(jobs=2) == ["swept"]
+    assert 'cell {"name": "n3", "x": 3}: a worker died' in killed(bench)
+    assert bench.measured()[3] == bench.measured()[2] == 2
+    assert max(bench.measured().values()) == 2
+
+
+def test_after_a_death_cells_not_handed_out_are_still_side_by_side(bench: Bench) -> None:
+    bench.experiment(
+        """log = lambda: (HERE / "measured").read_text()
+    if x == 19: os.kill(os.getpid(), signal.SIGKILL)
+    hold(lambda: log().count("19 ") == 2)
+    if x == 1: hold(lambda: "\\n0 " in log())""",
+        count=20,
+    )
+    assert bench.run(jobs=2) == ["swept"]
+    assert bench.kept() == 19
 
 
 def test_a_cell_that_goes_wrong_is_told_and_the_others_are_kept(bench: Bench) -> None:
@@ -243,7 +277,7 @@ def test_cells_that_cannot_be_told_apart_are_refused(bench: Bench) -> None:
 @pytest.fixture(scope="module")
 def cluster() -> Iterator:
     distributed = pytest.importorskip("distributed")
-    with distributed.LocalCluster(2, threads_per_worker=1, dashboard_address=None) as local:
+    with distributed.LocalCluster(2, threads_per_worker=1, dashboard_address=":0") as local:
         yield local
 
 
@@ -264,6 +298,26 @@ def test_a_killed_dask_worker_loses_nothing(bench: Bench, cluster) -> None:
     assert bench.run(dask=cluster.scheduler_address) == []
     assert len(pd.read_csv(bench.out / "swept.csv")) == 4 * COUNT
     assert bench.measured()[3] == 2
+
+
+@pytest.mark.parametrize(
+    ("address", "what"),
+    [
+        ("nonsense", "missing port"),
+        ("tcp://127.0.0.1:port", "invalid literal"),
+        ("post://a:1", "unknown address scheme"),
+    ],
+)
+def test_a_malformed_address_is_told_and_leaves_nothing_open(
+    bench: Bench, address: str, what: str
+) -> None:
+    pytest.importorskip("distributed")
+    bench.experiment()
+    with bench.popen("--dask", address) as process:  # what a client left open is told at the end
+        said = process.communicate()[1]
+    assert process.returncode == 2
+    assert len(said.splitlines()) == 1, said
+    assert f"--dask {address}: no Dask scheduler answers: {what}" in said
 
 
 def test_without_a_scheduler_or_the_extra_nothing_starts(

@@ -187,6 +187,8 @@ def _schemes(arguments: argparse.Namespace) -> list[str] | None:
     from quatspline import registry
 
     names = [name for given in arguments.schemes for name in given.split(",") if name]
+    if not names:
+        raise ValueError("--schemes: no name given")
     return [registry.scheme(name).name for name in dict.fromkeys(names)]
 
 

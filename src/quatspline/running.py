@@ -39,9 +39,11 @@ def run(
     options and sources had finished is kept.  ``size`` is by default full for the paper's, quick
     for the others.  Cells are measured by ``jobs`` processes, by default one a core, or by the Dask
     scheduler at an address.  A run of all experiments ends with the page, and so does any into a
-    folder that has one.  Raises ValueError for unknown or unusable names, and without a
-    scheduler.
+    folder that has one.  Raises ValueError for unknown or unusable names, for ``schemes`` without
+    one, and without a scheduler.
     """
+    if schemes is not None and not schemes:
+        raise ValueError("schemes: no name given")
     chosen = experiments(names)
     picked = [registry.scheme(name).name for name in schemes] if schemes is not None else None
     runs = {

@@ -128,26 +128,50 @@ def _one_by_one(name: str, run: Run, cells: Sequence[Cell]) -> Iterator[Done]:
 
 
 def _side_by_side(name: str, run: Run, cells: Sequence[Cell]) -> Iterator[Done]:
-    """Cells on the workers, as they finish; after a worker's death those left go to new ones."""
-    from joblib import Parallel, delayed
+    """Cells on the workers, as they finish; those begun when a worker dies are tried alone.
+
+    A death says not whose it was and takes the cells beside it along: only a cell whose worker dies
+    with nothing beside it is to blame.
+    """
     from joblib.externals.loky.process_executor import TerminatedWorkerError
 
     environment = _environment()
     shared = (name, run, environment, _sources(*environment.items()))
     left = dict(enumerate(cells))
     while left:
-        before = len(left)
-        # A cell a task: a task that dies takes no finished cell with it.
-        parallel = Parallel(return_as="generator_unordered", batch_size=1, max_nbytes=None)
+        begun: set[int] = set()
         try:
-            tasks = [delayed(_measured_elsewhere)(place, *shared, left[place]) for place in left]
-            for done in parallel(tasks):
+            for done in _dispatched(shared, dict(left), begun):
                 del left[done.place]
                 yield done
-        except TerminatedWorkerError as error:
-            if len(left) == before:  # nothing else finishes: a cell kills its worker
-                cell = key(next(iter(left.values())))
-                raise RuntimeError(f"a worker died, at cell {cell} or beside it: {error}") from None
+        except TerminatedWorkerError:
+            for place in [place for place in left if place in begun]:
+                yield _alone(shared, place, left.pop(place))
+
+
+def _alone(shared: tuple[Any, ...], place: int, cell: Cell) -> Done:
+    """A cell with nothing beside it, on a worker: this process must outlive it."""
+    from joblib.externals.loky.process_executor import TerminatedWorkerError
+
+    try:
+        (done,) = _dispatched(shared, {place: cell}, set())
+        return done
+    except TerminatedWorkerError as error:
+        return Done(place, "", f"a worker died, this cell alone on it: {experiment.reason(error)}")
+
+
+def _dispatched(shared: tuple[Any, ...], cells: dict[int, Cell], begun: set[int]) -> Iterator[Done]:
+    """Cells on the workers, as they finish; enters in ``begun`` those that are handed out."""
+    from joblib import Parallel, delayed
+
+    def tasks() -> Iterator[Any]:  # drawn from a few at a time, as workers become free
+        for place, cell in cells.items():
+            begun.add(place)
+            yield delayed(_measured_elsewhere)(place, *shared, cell)
+
+    # A cell a task: a task that dies takes no finished cell with it.
+    parallel = Parallel(return_as="generator_unordered", batch_size=1, max_nbytes=None)
+    yield from parallel(tasks())
 
 
 @contextmanager
@@ -174,8 +198,10 @@ def _client(address: str) -> AbstractContextManager[Any]:
     if importlib.util.find_spec("distributed") is None:
         raise ValueError("--dask needs the extra: pip install 'quatspline[dask]'")
     import distributed
+    from distributed.comm import resolve_address
 
     try:
+        resolve_address(address)  # a client that fails at this cannot be closed
         client = distributed.Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError) as error:
         reason = " ".join(str(error).split())
