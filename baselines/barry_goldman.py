@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from quatspline._jit import fit_kernel
+from quatspline._jit import REACH, fit_kernel
 from quatspline.families.arcs import SIZE as ARC
 from quatspline.families.arcs import set_arc
 from quatspline.families.nested import TRIANGLE, set_parameter
@@ -66,4 +66,4 @@ def FIT(q, h, closed, sign, parameters, segments, report):
         set_parameter(segments, i, 3, h0 / (h0 + h1), h1 / (h0 + h1))
         set_parameter(segments, i, 4, 0.0, h1 / (h1 + h2))
         set_parameter(segments, i, 5, 0.0, 1.0)
-        report[3] = max(report[3], r0, r1, r2)
+        report[REACH] = max(report[REACH], r0, r1, r2)

@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 from numba import carray
 
-from quatspline._jit import BLOCK, CONSTANTS, ROWS, fit_kernel, inlined, sample_kernel
+from quatspline._jit import BLOCK, CONSTANTS, REACH, ROWS, fit_kernel, inlined, sample_kernel
 from quatspline.families.chords import SIZE as CHORD
 from quatspline.families.chords import (
     VERSINE,
@@ -99,7 +99,7 @@ def FIT(q, h, closed, sign, parameters, segments, report):
         theta = set_chord(segments, i, keyframe(q, i, sign), keyframe(q, i + 1, sign))
         segments[i, TERMS] = parameters[0]
         segments[i, LAST] = parameters[1]
-        report[3] = max(report[3], theta)
+        report[REACH] = max(report[REACH], theta)
 
 
 @cache

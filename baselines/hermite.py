@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from quatspline._jit import fit_kernel
+from quatspline._jit import REACH, fit_kernel
 from quatspline.families.cumulative import CUMULATIVE, set_base, set_factor
 from quatspline.families.segments import SegmentCurve
 from quatspline.families.tangents import CHART, SECANT, chart_velocities, keyframe
@@ -79,4 +79,4 @@ def FIT(q, h, closed, sign, parameters, segments, report):
         c = mul(c[0], c[1], c[2], c[3], w, ex, ey, ez)
         x, y, z = log(c[0], c[1], c[2], c[3])
         r2 = set_factor(segments, i, 1, x, y, z, 0.0, 0.0, 3.0, -2.0, 0.0, 0.0)
-        report[3] = max(report[3], r1, r2, r3)
+        report[REACH] = max(report[REACH], r1, r2, r3)

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from quatspline._jit import fit_kernel, inlined
+from quatspline._jit import REACH, fit_kernel, inlined
 from quatspline.families.arcs import ARC, SIZE, set_arc
 from quatspline.families.driver import fit_tracks
-from quatspline.families.segments import REACH, SegmentCurve
+from quatspline.families.segments import SegmentCurve
 from quatspline.families.tangents import keyframe
 from quatspline.keyframes import Keyframes
 from quatspline.options import Count
@@ -54,7 +54,7 @@ class IncrementalSlerp(SegmentCurve):
         h, tracks = keyframes.spacings, keyframes.tracks
         segments = np.empty((tracks.shape[0], h.size * steps, SIZE))
         report = np.zeros((tracks.shape[0], 4))
-        fit_tracks(
+        reach = fit_tracks(
             FIT.address,
             tracks,
             h,
@@ -67,7 +67,7 @@ class IncrementalSlerp(SegmentCurve):
         # Every step is a segment of its own.
         knots = keyframes.knots[:-1, None] + h[:, None] / steps * np.arange(steps)
         knots = np.append(knots, keyframes.knots[-1])
-        self._set_segments(segments, report[:, REACH].max(), knots)
+        self._set_segments(segments, reach, knots)
 
 
 @inlined
@@ -89,6 +89,6 @@ def FIT(q, h, closed, sign, parameters, segments, report):
         for j in range(i * steps, (i + 1) * steps):
             r = _unit(b)
             theta = set_arc(segments, j, 0, p[0], p[1], p[2], p[3], r[0], r[1], r[2], r[3])
-            report[3] = max(report[3], theta)
+            report[REACH] = max(report[REACH], theta)
             c = (k * b[0] - a[0], k * b[1] - a[1], k * b[2] - a[2], k * b[3] - a[3])
             a, b, p = b, c, r

@@ -22,7 +22,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from quatspline._jit import compiled, fit_kernel
+from quatspline._jit import CHANGE, ITERATIONS, REACH, RESIDUAL, compiled, fit_kernel
 from quatspline.families.bspline import (
     control,
     end_velocity,
@@ -39,7 +39,7 @@ from quatspline.families.bspline import (
 )
 from quatspline.families.bspline_newton import copy, descend, moved, newton, settle
 from quatspline.families.cumulative import CUMULATIVE
-from quatspline.families.segments import REACH, SegmentCurve
+from quatspline.families.segments import SegmentCurve
 from quatspline.keyframes import Keyframes
 from quatspline.options import Count, OnFailure, Positive, Stop
 from quatspline.primitives import between, mul
@@ -129,16 +129,20 @@ def FIT(q, h, closed, sign, parameters, segments, report):
         set_ends(q, h, parameters, w)
     problem = pose(q, h, sign if closed else 0.0, clamped, w)
     if parameters[METHOD] != 0.0:
-        report[0], report[1] = relax(problem, w, controls[0], tolerance, by_change, limit)
-        report[3], report[2] = write_segments(q, h, closed, clamped, sign, controls[0], w, segments)
+        report[ITERATIONS], report[CHANGE] = relax(
+            problem, w, controls[0], tolerance, by_change, limit
+        )
+        report[REACH], report[RESIDUAL] = write_segments(
+            q, h, closed, clamped, sign, controls[0], w, segments
+        )
         return
     updates, change, met, side = newton(problem, w, controls, tolerance, by_change, limit)
     while True:
         settle(controls[side], w, met)
-        report[3], report[2] = write_segments(
+        report[REACH], report[RESIDUAL] = write_segments(
             q, h, closed, clamped, sign, controls[side], w, segments
         )
-        if not met or by_change or report[2] <= tolerance or updates >= limit:
+        if not met or by_change or report[RESIDUAL] <= tolerance or updates >= limit:
             break
         # What is written misses by more than equation (2) did: ask (2) for more.
         more, _, change, met, side = descend(
@@ -147,7 +151,7 @@ def FIT(q, h, closed, sign, parameters, segments, report):
         updates += more
         if more == 0:
             break
-    report[0], report[1] = updates, change
+    report[ITERATIONS], report[CHANGE] = updates, change
 
 
 class Kim(SegmentCurve):

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from quatspline.families.least_torque import REACH, minimise
+from quatspline._jit import REACH
+from quatspline.families.least_torque import minimise
 from quatspline.families.rotation_vector import ROTATION_VECTOR
 from quatspline.families.segments import SegmentCurve
 from quatspline.keyframes import Keyframes

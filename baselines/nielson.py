@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from quatspline._jit import compiled, fit_kernel
+from quatspline._jit import CHANGE, ITERATIONS, REACH, RESIDUAL, compiled, fit_kernel
 from quatspline.families.arcs import SIZE as ARC
 from quatspline.families.arcs import set_arc
 from quatspline.families.nested import TRIANGLE, set_parameter
@@ -203,8 +203,8 @@ def _iterate(q, weights, closed, sign, parameters, report):
             residual = _residual(d, first, last, weights, sign, q)
         if not (change > STALLED) or (not by_residual and change <= tolerance):
             break
-    report[0], report[1] = count, change
-    report[2] = _residual(d, first, last, weights, sign, q)
+    report[ITERATIONS], report[CHANGE] = count, change
+    report[RESIDUAL] = _residual(d, first, last, weights, sign, q)
     return d
 
 
@@ -226,4 +226,4 @@ def FIT(q, h, closed, sign, parameters, segments, report):
         r2 = set_arc(segments, i, 2 * ARC, p2[0], p2[1], p2[2], p2[3], p3[0], p3[1], p3[2], p3[3])
         for k in range(6):
             set_parameter(segments, i, k, 0.0, 1.0)
-        report[3] = max(report[3], r0, r1, r2)
+        report[REACH] = max(report[REACH], r0, r1, r2)

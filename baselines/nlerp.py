@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from numba import carray
 
-from quatspline._jit import BLOCK, ROWS, fit_kernel, sample_kernel
+from quatspline._jit import BLOCK, REACH, ROWS, fit_kernel, sample_kernel
 from quatspline.families.chords import (
     SIZE,
     set_acceleration,
@@ -46,7 +46,7 @@ def FIT(q, h, closed, sign, parameters, segments, report):
     """The chord from each keyframe to the next."""
     for i in range(h.size):
         theta = set_chord(segments, i, keyframe(q, i, sign), keyframe(q, i + 1, sign))
-        report[3] = max(report[3], theta)
+        report[REACH] = max(report[REACH], theta)
 
 
 _KERNELS = (ORIENTATION, VELOCITY, ACCELERATION)

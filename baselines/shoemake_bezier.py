@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from quatspline._jit import compiled, fit_kernel
+from quatspline._jit import REACH, compiled, fit_kernel
 from quatspline.families.bezier import set_controls
 from quatspline.families.nested import TRIANGLE
 from quatspline.families.segments import SegmentCurve
@@ -104,4 +104,4 @@ def FIT(q, h, closed, sign, parameters, segments, report):
     for i in range(h.size):
         p0, p3 = keyframe(q, i, sign), keyframe(q, i + 1, sign)
         p1, p2 = keyframe(handles, i, sign), _double(keyframe(handles, i + 1, sign), p3)
-        report[3] = max(report[3], set_controls(segments, i, p0, p1, p2, p3))
+        report[REACH] = max(report[REACH], set_controls(segments, i, p0, p1, p2, p3))

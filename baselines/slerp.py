@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from quatspline._jit import fit_kernel
+from quatspline._jit import REACH, fit_kernel
 from quatspline.families.arcs import ARC, set_arc
 from quatspline.families.segments import SegmentCurve
 from quatspline.keyframes import Keyframes
@@ -50,4 +50,4 @@ def FIT(q, h, closed, sign, parameters, segments, report):
             s * q[j, 2],
             s * q[j, 3],
         )
-        report[3] = max(report[3], theta)
+        report[REACH] = max(report[REACH], theta)

@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from quatspline._jit import compiled, fit_kernel, inlined
+from quatspline._jit import CHANGE, ITERATIONS, RESIDUAL, compiled, fit_kernel, inlined
 from quatspline.families import bspline
 from quatspline.families.block_tridiagonal import backward, forward, workspace
 from quatspline.families.segments import SegmentCurve
@@ -200,14 +200,14 @@ def _iterate(problem, d, parameters, report):
             length *= 0.5
             if length < SHORTEST:
                 _copy(old, d)
-                report[0], report[1] = count, change
+                report[ITERATIONS], report[CHANGE] = count, change
                 return
             change = _update(d, old, first, work[3], length)
             total, worst = _look(problem, d)
         count += 1
         if not by_residual and change <= tolerance:
             break
-    report[0], report[1] = count, change
+    report[ITERATIONS], report[CHANGE] = count, change
 
 
 @inlined
@@ -284,4 +284,4 @@ def FIT(q, h, closed, sign, parameters, segments, report):
             d[i, 0], d[i, 1], d[i, 2], d[i, 3] = a
     first, last = (0, n) if closed else (1, n - 1)
     _iterate((q, m, p, sign, first, last), d, parameters, report)
-    report[2] = _write(q, h, d, sign, closed, clamped, segments)
+    report[RESIDUAL] = _write(q, h, d, sign, closed, clamped, segments)

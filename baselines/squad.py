@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from quatspline._jit import compiled, fit_kernel
+from quatspline._jit import REACH, compiled, fit_kernel
 from quatspline.families.arcs import SIZE as ARC
 from quatspline.families.arcs import set_arc
 from quatspline.families.nested import SQUAD
@@ -98,4 +98,4 @@ def FIT(q, h, closed, sign, parameters, segments, report):
         b = moved(r, 0.5 * x - k * g[0], 0.5 * y - k * g[1], 0.5 * z - k * g[2])
         r0 = set_arc(segments, i, 0, p[0], p[1], p[2], p[3], r[0], r[1], r[2], r[3])
         r1 = set_arc(segments, i, ARC, a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3])
-        report[3] = max(report[3], r0, r1)
+        report[REACH] = max(report[REACH], r0, r1)

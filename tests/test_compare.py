@@ -113,6 +113,18 @@ def test_command_writes_table_figures_advice_and_page(
     assert "Take local-quintic" in (out / "report.html").read_text()
 
 
+def test_rounding_of_curves_at_rest_is_not_compared() -> None:
+    """A body at rest needs no torque: what rounding leaves differs by fifty orders of magnitude."""
+    table = qs.compare(
+        None, np.tile([0.36, 0.48, -0.8, 0.0], (6, 1)), ["quartic", "nielson", "squad"]
+    )
+    assert (table[["torque", "jerk", "peak"]] == 0.0).all(axis=None)
+    assert (table[["torque_over_least", "peak_over_least"]] == 1.0).all(axis=None)
+    assert not any(
+        "torque of the quickest" in line for line in advice.lines(advice.recommendation(table))
+    )
+
+
 @pytest.mark.parametrize("case", edge_cases())
 def test_the_edge_pack_never_shows_a_traceback(
     case: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]

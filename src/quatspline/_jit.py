@@ -146,6 +146,9 @@ FIT_SIGNATURE = types.void(
     _matrix, _vector, types.boolean, types.float64, _vector, _matrix, _vector
 )
 
+ITERATIONS, CHANGE, RESIDUAL, REACH = range(4)
+"""Entries of a fit kernel's report; the last is the largest half angle that a sample can meet."""
+
 
 def sample_kernel(function: Callable[..., Any]) -> Kernel:
     """A kernel ``f(sheet, n)`` that evaluates the first n samples of a block.
@@ -159,8 +162,8 @@ def fit_kernel(function: Callable[..., Any]) -> Kernel:
     """A kernel ``f(q, h, closed, sign, parameters, segments, report)`` that fits one track.
 
     q (n, 4) keyframes, h (segments,) spacings, sign the closing sign, parameters (p,) the
-    scheme's options as numbers; fills segments (segments, constants) and report (4,), which
-    holds iterations, change, residual, and the largest half angle that a sample can meet.
+    scheme's options as numbers; fills segments (segments, constants) and report (4,),
+    whose entries are named above.
     """
     return Kernel(function, FIT_SIGNATURE)
 

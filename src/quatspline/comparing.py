@@ -18,8 +18,7 @@ from quatspline.curve import Curve
 from quatspline.experiment import Run
 from quatspline.instruments.continuity import jumps, measured_continuity, speeds
 from quatspline.instruments.fairness import fairness
-from quatspline.instruments.speed import repeated
-from quatspline.instruments.timing import interleaved
+from quatspline.instruments.timing import interleaved, repeated
 from quatspline.instruments.trials import Row, attempted, facts
 from quatspline.keyframes import Keyframes
 from quatspline.options import declared
@@ -33,6 +32,9 @@ if TYPE_CHECKING:
 
 TOLERANCE = 1e-9
 """Of iterative schemes, in rad."""
+
+STILL = 1e-12
+"""A shorter path, in rad, is a body at rest: its energies are rounding, which nobody compares."""
 
 PROBES, CALLS = 40, 400
 """Samples that foretell what instruments cost a scheme, which take about CALLS of them a segment."""
@@ -163,6 +165,8 @@ def _measured(
     fair = fairness(curve)
     if smooth < 1:  # a jump of the velocity is an infinite torque, which no quadrature sees
         fair |= dict.fromkeys(ENERGIES, np.inf)
+    if fair["length"] < STILL:
+        fair |= dict.fromkeys(ENERGIES, 0.0)
     pace, report = speeds(curve), curve.solve_report
     curves[name] = curve
     row = {

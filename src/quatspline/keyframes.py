@@ -47,7 +47,7 @@ class Keyframes:
     @cached_property
     def spacings(self) -> FloatArray:
         """Knot spacings h, one a segment: (n - 1,) or, closed, (n,)."""
-        return np.diff(self.knots)
+        return self.knots[1:] - self.knots[:-1]
 
     @property
     def quaternions(self) -> FloatArray:
@@ -125,11 +125,8 @@ def prepare(
         )
     track_shape = q.shape[1:-1]
     rows = q.reshape(n, -1, 4)
-    tracks, signs = (
-        np.empty((rows.shape[1], n, 4)),
-        np.full(rows.shape[1], float(closing_sign or 1)),
-    )
-    if not _take(rows, align, bool(closed and align), tracks, signs):
+    tracks, signs = np.empty((rows.shape[1], n, 4)), np.empty(rows.shape[1])
+    if not _take(rows, bool(align), bool(closed), float(closing_sign or 1), tracks, signs):
         _explain(q)
     keyframes = Keyframes(t, tracks, track_shape, bool(closed), signs)
     if not align:
@@ -177,7 +174,7 @@ def _quaternions(given: Any, least: int) -> FloatArray:
 
 
 @compiled
-def _take(q, align, closed, tracks, signs):
+def _take(q, align, closed, closing_sign, tracks, signs):
     """Normalise (n, K, 4) into tracks (K, n, 4), aligned, and close them; False if one is no unit."""
     for k in range(tracks.shape[0]):
         sign = 1.0
@@ -194,12 +191,13 @@ def _take(q, align, closed, tracks, signs):
                     + z * q[i - 1, k, 3]
                 )
                 sign = -sign if dot < 0.0 else sign
-            norm *= sign
-            tracks[k, i, 0] = w / norm
-            tracks[k, i, 1] = x / norm
-            tracks[k, i, 2] = y / norm
-            tracks[k, i, 3] = z / norm
-        if closed:
+            short = (1.0 - norm) / norm  # x / norm = x + short x, to a rounding, and cheaper
+            tracks[k, i, 0] = sign * (w + short * w)
+            tracks[k, i, 1] = sign * (x + short * x)
+            tracks[k, i, 2] = sign * (y + short * y)
+            tracks[k, i, 3] = sign * (z + short * z)
+        signs[k] = closing_sign
+        if closed and align:
             a, b = tracks[k, 0], tracks[k, tracks.shape[1] - 1]
             dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
             signs[k] = -1.0 if dot < 0.0 else 1.0

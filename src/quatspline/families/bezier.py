@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from quatspline._jit import compiled, fit_kernel
+from quatspline._jit import REACH, compiled, fit_kernel
 from quatspline.families.arcs import SIZE as ARC
 from quatspline.families.arcs import set_arc
 from quatspline.families.nested import set_parameter
@@ -76,4 +76,4 @@ def FIT(q, h, closed, sign, parameters, segments, report):
             v[i, 1] = v[i, 0]
     for i in range(h.size):
         j = (i + 1) % n
-        report[3] = max(report[3], set_bezier(segments, i, q, sign, h[i], v[i, 0], v[j, 1]))
+        report[REACH] = max(report[REACH], set_bezier(segments, i, q, sign, h[i], v[i, 0], v[j, 1]))

@@ -16,6 +16,7 @@ from numba import carray
 from quatspline._jit import (
     BLOCK,
     CONSTANTS,
+    REACH,
     RESULT,
     ROWS,
     at_address,
@@ -65,9 +66,12 @@ def _describe(knots, segments, signs, closed, places):
 
 @compiled
 def fit_tracks(address, tracks, h, closed, signs, parameters, segments, report):
-    """Call a fit kernel on every track (K, n, 4)."""
+    """Call a fit kernel on every track (K, n, 4); the largest reach that they report."""
+    reach = 0.0
     for k in range(tracks.shape[0]):
         call_fit(address, tracks[k], h, closed, signs[k], parameters, segments[k], report[k])
+        reach = max(reach, report[k, REACH])
+    return reach
 
 
 @compiled

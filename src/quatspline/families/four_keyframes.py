@@ -18,10 +18,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from quatspline._jit import compiled, fit_kernel, inlined
+from quatspline._jit import REACH, compiled, fit_kernel, inlined
 from quatspline.families.cumulative import SIDE, set_base, set_turn
 from quatspline.families.quintics import bound, hermite
-from quatspline.families.segments import REACH
 from quatspline.primitives import turn
 
 
@@ -33,11 +32,14 @@ def _steps(q, sign, closed, d):
     """
     n = q.shape[0]
     length, nx, ny, nz = d[0], d[1], d[2], d[3]
+    parts = np.empty((4, n))  # component first: the loop below vectorises
+    w, x, y, z = parts[0], parts[1], parts[2], parts[3]
+    for j in range(n):
+        w[j], x[j], y[j], z[j] = q[j, 0], q[j, 1], q[j, 2], q[j, 3]
     for j in range(n - 1):
         length[j + 1], nx[j + 1], ny[j + 1], nz[j + 1] = turn(
-            q[j, 0], q[j, 1], q[j, 2], q[j, 3],
-            q[j + 1, 0], q[j + 1, 1], q[j + 1, 2], q[j + 1, 3],
-        )  # fmt: skip
+            w[j], x[j], y[j], z[j], w[j + 1], x[j + 1], y[j + 1], z[j + 1]
+        )
     last = d.shape[1] - 1
     for c in range(4):
         d[c, 0] = d[c, last] = 0.0

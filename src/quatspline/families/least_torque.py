@@ -14,7 +14,7 @@ import math
 
 import numpy as np
 
-from quatspline._jit import compiled, inlined
+from quatspline._jit import CHANGE, ITERATIONS, REACH, compiled, inlined
 from quatspline.families.rotation_vector import (
     PHI,
     SIZE,
@@ -24,7 +24,6 @@ from quatspline.families.rotation_vector import (
     set_base,
     set_end_rates,
 )
-from quatspline.families.segments import CHANGE, ITERATIONS, REACH
 from quatspline.primitives import exp, log_between, mul, sinc
 
 # notation: log units; a node has q (4) and x = (v, a) (6), half the body velocity and acceleration;

@@ -16,14 +16,11 @@ from typing import Any
 
 import numpy as np
 
-from quatspline._jit import Kernel
+from quatspline._jit import CHANGE, ITERATIONS, RESIDUAL, Kernel
 from quatspline.curve import WRONG_FIXED_POINT, Curve, SolveReport
 from quatspline.families.driver import described, fit_tracks, sample
 from quatspline.primitives import NEAR
 from quatspline.quaternion import BoolArray, FloatArray
-
-ITERATIONS, CHANGE, RESIDUAL, REACH = range(4)
-"""Entries of a fit kernel's report."""
 
 CHUNK = 4096
 """Segments fitted at once where a call asks for a window of a long curve ..."""
@@ -81,8 +78,10 @@ class SegmentCurve(Curve):
             # Kernels for any angle, now and later: a value must not depend on what was called before.
             self._set_segments(segments, np.inf)
         else:
-            self._fit_rows(frames.tracks, frames.spacings, frames.closed, segments, report)
-            self._set_segments(segments, report[:, REACH].max())
+            self._set_segments(
+                segments,
+                self._fit_rows(frames.tracks, frames.spacings, frames.closed, segments, report),
+            )
         return report
 
     def _fit_rows(
@@ -92,11 +91,12 @@ class SegmentCurve(Curve):
         closed: bool,
         segments: FloatArray,
         report: FloatArray,
-    ) -> None:
+    ) -> float:
         signs = self._keyframes.signs
-        fit_tracks(
+        reach: float = fit_tracks(
             self.fit_kernel.address, tracks, h, closed, signs, self.parameters, segments, report
         )
+        return reach
 
     def _fit_window(self, t: FloatArray) -> None:
         """Fit the chunks of segments that samples t (m,) lie in, where that was not done before."""

@@ -47,8 +47,9 @@ def recommendation(table: pd.DataFrame) -> list[Finding]:
         return []
     ledger = Ledger(lambda name: table)
     best, fairest = _best(pool), str(pool.iloc[0]["scheme"])
+    torques = pool.set_index("scheme")["torque"]
     found = [_first(ledger, best, pool)]
-    if best != fairest:
+    if torques[best] > torques[fairest]:
         found.append(_fairest(ledger, fairest, best))
     quickest = str(pool.sort_values("seconds_per_sample").iloc[0]["scheme"])
     if quickest != best:
@@ -111,12 +112,13 @@ def _fairest(ledger: Ledger, name: str, best: str) -> Finding:
 
 
 def _quickest(ledger: Ledger, name: str, best: str) -> Finding:
-    text = (
-        f"The quickest candidate to evaluate is {name}: a sample of {best} takes {{cost:.2g}} times as long, but the "
-        "torque of the quickest is {torque:.3f} times that of the first choice."
-    )
+    text = f"The quickest candidate to evaluate is {name}: a sample of {best} takes {{cost:.2g}} times as long"
     cost = _ratio(ledger, "seconds_per_sample", best, name)
-    return Finding(ADVICE, said(text, cost=cost, torque=_ratio(ledger, "torque", name, best)))
+    torque = _ratio(ledger, "torque", name, best)
+    if not torque.cells[1].value:  # at rest no curve needs any
+        return Finding(ADVICE, said(text + ".", cost=cost))
+    text += ", but the torque of the quickest is {torque:.3f} times that of the first choice."
+    return Finding(ADVICE, said(text, cost=cost, torque=torque))
 
 
 def _paper(ledger: Ledger) -> Finding:

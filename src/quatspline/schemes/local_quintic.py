@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from quatspline._jit import fit_kernel, inlined
+from quatspline._jit import REACH, fit_kernel, inlined
 from quatspline.families.local_rates import chords, continued, local_rates
 from quatspline.families.rotation_vector import ROTATION_VECTOR, set_base, set_end_rates
-from quatspline.families.segments import REACH, SegmentCurve
+from quatspline.families.segments import SegmentCurve
 from quatspline.keyframes import Keyframes
 from quatspline.options import Count
 
