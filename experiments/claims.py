@@ -44,7 +44,7 @@ RATES = ("no", "interior", "everywhere")
 """Places of a constant rate, from fewest to most."""
 COLORS = {UNKNOWN: "#c8c8c8", HOLDS: "#8fd3bd", DEPARTS: "#d55e00"}
 """By verdict, the gravest last; text is legible on all of them."""
-OTHERS = "other sayings"
+OTHERS = "other claims, of which depart"
 
 
 def cells(run: Run) -> list[dict[str, Any]]:
@@ -161,7 +161,7 @@ def draw(table: pd.DataFrame) -> Figure:
     verdicts = named.pivot(index="scheme", columns="claim", values="verdict")[columns]
     texts = named.pivot(index="scheme", columns="claim", values="measured")[columns]
     rest = table[~table["claim"].isin(columns)].groupby("scheme")["verdict"]
-    told = rest.agg(lambda found: f"{(found == DEPARTS).sum()}/{len(found)} depart")
+    told = rest.agg(lambda found: f"{(found == DEPARTS).sum()}/{len(found)}")
     verdicts[OTHERS] = rest.agg(lambda found: max(found, key=list(COLORS).index))
     texts[OTHERS] = told
     departs = (verdicts == DEPARTS).sum(axis=1).sort_values(kind="stable").index
@@ -176,7 +176,10 @@ def _matrix(ax: Any, verdicts: pd.DataFrame, texts: pd.DataFrame) -> None:
     ax.imshow(codes.astype(float), cmap=colors, vmin=0, vmax=len(COLORS) - 1, aspect="auto")
     label_cells(ax, texts.fillna(""), verdicts == DEPARTS)
     heads = [str(name).replace(" degrees", "°") for name in verdicts]
-    heads = [name.replace(", ", "\n", 1).replace(" is the", "\nis the") for name in heads]
+    heads = [
+        name.replace(", ", ",\n" if name == OTHERS else "\n", 1).replace(" is the", "\nis the")
+        for name in heads
+    ]
     ax.set_xticks(range(verdicts.shape[1]), heads, fontsize=6, rotation=90)
     ax.set_yticks(range(len(verdicts)), list(verdicts.index))
     ax.tick_params(length=0, top=True, labeltop=True, bottom=False, labelbottom=False)
@@ -189,5 +192,6 @@ def caption(table: pd.DataFrame) -> str:
     return (
         f"Claims by verdict (red: departs, green: holds, grey: not measurable) with what was measured; of {len(table)} "
         f"in all, {', '.join(parts)}. Continuity is claimed once and tried under several step angles and kinds of "
-        "times. Rows are sorted by departures; other sayings are those of publications and libraries about one scheme."
+        "times. Rows are sorted by departures; other claims are those of publications and libraries about one scheme "
+        "(departures/all)."
     )

@@ -131,7 +131,7 @@ QUESTIONS = (
         MET,
         quoted={
             "nanoseconds_per_sample": "{nanoseconds_per_sample:.3g} ns",
-            "smooth_k": "C{smooth_k:.0f} at steps of 60 degrees",
+            "smooth_k": "C{smooth_k:.0f} at moderate steps",
         },
     ),
 )
