@@ -48,7 +48,7 @@ def cells(run: Run) -> list[dict[str, Any]]:
     names = [REFERENCE, *(n for n in (run.schemes or found()) if n != REFERENCE)]
     angles = (10, 90, 170) if run.quick else range(10, 171, 20)
     data = [COMMITTED, *(f"{degrees} degrees" for degrees in angles)]
-    return [{"scheme": name, "data": where} for name in names for where in data]
+    return [{"scheme": name, "data": where} for where in data for name in names]
 
 
 def _sets(run: Run, data: str) -> list[tuple[FloatArray, FloatArray]]:

@@ -98,6 +98,8 @@ class Results:
         """Write ``<name>.png`` and ``<name>.svg``, the same bytes every time."""
         import matplotlib as mpl
 
+        figure.draw_without_rendering()
+        figure.set_layout_engine("none")  # laid out: once, and the same in both files
         undated: dict[str, dict[str, Any]] = {"png": {}, "svg": {"Date": None}}
         for kind, metadata in undated.items():
             # An SVG names its clip paths by salted hashes; without this the salt is random.
