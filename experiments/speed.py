@@ -17,7 +17,7 @@ KEYS = ["task", "scheme"]
 NOTE = (
     "Medians of interleaved, calibrated rounds on one thread unless the task says otherwise, compilation and warm-up "
     "apart; keyframes are a walk of 40-degree steps. times_fill and times_sincos: per item, over writing the result "
-    "and over one numpy sine and cosine an item in the same run. Slow peers do fewer items of the same span. "
+    "and over one numpy sine and cosine an item in the same run. Slow peers do the first items only. "
     "Iterative schemes solve to 1e-9. 'start' rows are seconds in new processes."
 )
 FORMATS = {

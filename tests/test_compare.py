@@ -125,6 +125,33 @@ def test_rounding_of_curves_at_rest_is_not_compared() -> None:
     )
 
 
+def test_times_of_a_clock_compare_as_times_from_zero() -> None:
+    times, keyframes = np.arange(9) / 64.0, walk(9, 50.0, seed=1)
+    columns = ["continuity", "torque", "key_speed", "failure"]
+    near, far = (qs.compare(times + start, keyframes, NAMES)[columns] for start in (0.0, 2.0**31))
+    pd.testing.assert_frame_equal(near, far)
+
+
+def test_rounding_of_a_constant_rate_is_not_compared() -> None:
+    spin = [[np.cos(a), np.sin(a), 0, 0] for a in 0.3 * np.arange(8)]
+    table = qs.compare(
+        None, spin, ["slerp", "local-quintic", "kim", "quartic", "scipy-rotation-spline"]
+    )
+    known = table.set_index("scheme")
+    assert (known.drop(index="quartic")["torque"] == 0.0).all()
+    assert (known.drop(index="quartic")["continuity"] == 3).all()
+    assert known.loc["quartic", "torque"] > 0.01  # the ends' rates differ from the spin's
+    assert "inf" not in "".join(advice.lines(advice.recommendation(table)))
+
+
+def test_a_leap_is_not_taken_for_rest() -> None:
+    """moving-frame rests at half-turns and leaps between them."""
+    keyframes = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]
+    table = qs.compare(None, keyframes, ["moving-frame", "kim"]).set_index("scheme")
+    assert table.loc["moving-frame", ["continuity", "torque"]].tolist() == [-1, np.inf]
+    assert table.loc["kim", "torque_over_least"] == 1.0
+
+
 @pytest.mark.parametrize("case", edge_cases())
 def test_the_edge_pack_never_shows_a_traceback(
     case: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]

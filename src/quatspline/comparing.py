@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,7 +17,7 @@ from quatspline import keyframes as kf
 from quatspline import quaternion
 from quatspline.curve import Curve
 from quatspline.experiment import Run
-from quatspline.instruments.continuity import jumps, measured_continuity, speeds
+from quatspline.instruments.continuity import jumps, measured_continuity, rounding, speeds
 from quatspline.instruments.fairness import fairness
 from quatspline.instruments.timing import interleaved, repeated
 from quatspline.instruments.trials import Row, attempted, facts
@@ -32,9 +33,6 @@ if TYPE_CHECKING:
 
 TOLERANCE = 1e-9
 """Of iterative schemes, in rad."""
-
-STILL = 1e-12
-"""A shorter path, in rad, is a body at rest: its energies are rounding, which nobody compares."""
 
 PROBES, CALLS = 40, 400
 """Samples that foretell what instruments cost a scheme, which take about CALLS of them a segment."""
@@ -97,8 +95,14 @@ def compare(
     >>> table.set_index("scheme")["continuity"].to_dict()
     {'quartic': 2, 'slerp': 0}
     """
-    keyframes = kf.prepare(times, quaternions, closed=closed)
+    keyframes = _prepared(times, quaternions, closed)
     return _compared(keyframes, schemes)
+
+
+def _prepared(times: ArrayLike | None, quaternions: ArrayLike, closed: bool) -> Keyframes:
+    """Keyframes with times since the first: instruments divide steps that the times of a clock round."""
+    keyframes = kf.prepare(times, quaternions, closed=closed)
+    return replace(keyframes, times=keyframes.knots)
 
 
 def _compared(keyframes: Keyframes, named: Sequence[str] | None) -> pd.DataFrame:
@@ -123,8 +127,10 @@ def _compared(keyframes: Keyframes, named: Sequence[str] | None) -> pd.DataFrame
 
 
 def _over_least(values: pd.Series) -> pd.Series:
-    """Multiples of the least; where that is 0, 1 for it and infinity for all else."""
+    """Multiples of the least, infinite ones of any; where that is 0, 1 for it and infinity for all else."""
     least = values.min()
+    if np.isinf(least):
+        return values
     if least > 0.0:
         return values / least
     return values.map({least: 1.0}).where(values.eq(least) | values.isna(), np.inf)
@@ -162,11 +168,9 @@ def _measured(
     if thrifty:
         _afford_samples(curve)
     smooth = measured_continuity(jumps(curve))
-    fair = fairness(curve)
+    fair = _above_rounding(curve, fairness(curve))
     if smooth < 1:  # a jump of the velocity is an infinite torque, which no quadrature sees
         fair |= dict.fromkeys(ENERGIES, np.inf)
-    if fair["length"] < STILL:
-        fair |= dict.fromkeys(ENERGIES, 0.0)
     pace, report = speeds(curve), curve.solve_report
     curves[name] = curve
     row = {
@@ -180,6 +184,15 @@ def _measured(
         **facts(curve),
     }
     return [row]
+
+
+def _above_rounding(curve: Curve, fair: Row) -> Row:
+    """Energies of which nothing but rounding is left, at rest or at a constant rate, are zero."""
+    h = curve.keyframes.spacings
+    alpha, slope = (rounding(curve, order) for order in (2, 3))
+    floors = (alpha**2 * (h**-3).sum(), slope**2 * (h**-5).sum(), alpha * (h**-2).max())
+    zero = [name for name, floor in zip(ENERGIES, floors, strict=True) if fair[name] <= floor]
+    return fair | dict.fromkeys(zero, 0.0)
 
 
 def _afford_set_up(name: str, keyframes: Keyframes) -> None:
@@ -276,7 +289,7 @@ def command(
     mpl.use("Agg")  # nothing here may open a window
 
     began = time.perf_counter()
-    keyframes = kf.prepare(motion.times, motion.quaternions, closed=closed)
+    keyframes = _prepared(motion.times, motion.quaternions, closed)
     results = Results(out)
     results.begin(call, schemes=list(schemes) if schemes is not None else None)
     table = _compared(keyframes, schemes)

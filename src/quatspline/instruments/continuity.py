@@ -34,6 +34,9 @@ derivatives of cubic blending functions are 6 to 18) ..."""
 STENCIL = (1e-12, 1e-7, 1e-6, 1e-3)
 """... and jumps of stencils on orientations below these, an entry an order, over the shortest spacing to
 that order: ten to a hundred times the rounding that smooth segments were seen to leave."""
+NOISE = (1e-14, 1e-13, 1e-12, 1e-9)
+"""Closed forms leave this much rounding, an entry an order, over the spacing beside the knot to that order: all
+that is left of curves at rest or at a constant rate, whose own size says nothing."""
 FALLING = 0.05
 """So do those that fall to this share when the step falls to a tenth."""
 
@@ -44,7 +47,9 @@ SUSPECTS = 16
 """Intervals between samples searched for a leap: those that change most against their neighbours."""
 HALVINGS, GAP = 30, 1e-6
 """Of an interval between samples, and the angle in rad above which what is left is a jump: nothing that a
-curve turns by in 1e-10 of a segment."""
+curve turns by in 1e-10 of a segment ..."""
+FASTER = 100.0
+"""... nor at this multiple of its rate over the interval."""
 
 AT_REST = 1e-12
 """A motion that turns by less in all, in rad, is at rest: what is left is rounding."""
@@ -59,17 +64,19 @@ def jumps(curve: Curve, orders: Sequence[int] = (0, 1, 2, 3)) -> pd.DataFrame:
     Derivatives are those of `shape_rates`.
     """
     at, step = _inner_knots(curve)
-    coarse, fine = (_jumps(curve, at, share * step) for share in STEPS)
+    gaps = [_jumps(curve, at, share * step) for share in STEPS]
     gap = _gap(curve) if 0 in orders else 0.0
-    coarse[0], fine[0] = max(coarse[0], gap), max(fine[0], gap)
     rows, sizes = [], _sizes(curve)
     for order in orders:
+        inside = 0.0 if order else gap
+        coarse, fine = (float(np.max(found[order], initial=inside)) for found in gaps)
         size = sizes[order]
         floor = _floor(curve, order, size)
-        smooth = fine[order] <= floor or fine[order] <= FALLING * coarse[order]
-        relative = fine[order] / size if size > floor else 0.0
+        local = float(np.max(gaps[1][order] * step**order, initial=inside))
+        smooth = fine <= floor or fine <= FALLING * coarse or local <= rounding(curve, order)
+        relative = fine / size if size > floor else 0.0
         names = (order, QUANTITIES[order], UNITS[order])
-        rows.append((*names, fine[order], coarse[order], size, relative, smooth))
+        rows.append((*names, fine, coarse, size, relative, smooth))
     columns = ["order", "quantity", "unit", "jump", "coarse_jump", "size", "relative", "continuous"]
     return pd.DataFrame(rows, columns=columns)
 
@@ -111,13 +118,12 @@ def _dense(curve: Curve) -> FloatArray:
     return (times[:-1, None] + np.diff(times)[:, None] * u).reshape(-1)
 
 
-def _jumps(curve: Curve, at: FloatArray, step: FloatArray) -> list[float]:
-    """The largest jump of every order, 0 without knots."""
+def _jumps(curve: Curve, at: FloatArray, step: FloatArray) -> list[FloatArray]:
+    """The jump at every knot, of every order."""
     if at.size == 0:
-        return [0.0] * len(QUANTITIES)
+        return [np.zeros(0)] * len(QUANTITIES)
     after, before = (one_sided(curve, at, step, side) for side in (1, -1))
-    gaps = (np.linalg.norm(a - b, axis=-1) for a, b in zip(after, before, strict=True))
-    return [float(gap.max()) for gap in gaps]
+    return [np.linalg.norm(a - b, axis=-1) for a, b in zip(after, before, strict=True)]
 
 
 def _sizes(curve: Curve) -> list[float]:
@@ -134,15 +140,20 @@ def _gap(curve: Curve) -> float:
     Suspect intervals are halved, towards the larger change, until only a jump can be left of them.
     """
     t = _dense(curve)
-    suspects = _suspects(quaternion.distance(curve(t[1:]), curve(t[:-1])))
+    change = quaternion.distance(curve(t[1:]), curve(t[:-1]))
+    suspects = _suspects(change)
     lo, hi = t[suspects], t[suspects + 1]
+    rate = change[suspects] / (hi - lo)
     for _ in range(HALVINGS):
         middle = 0.5 * (lo + hi)
         ends, inner = curve(np.stack([lo, hi])), curve(middle)
         left = quaternion.distance(ends[0], inner) > quaternion.distance(inner, ends[1])
         lo, hi = np.where(left, lo, middle), np.where(left, middle, hi)
-    gap = float(quaternion.distance(curve(lo), curve(hi)).max())
-    return gap if gap > GAP else 0.0
+    left_over = quaternion.distance(curve(lo), curve(hi))
+    told = left_over > GAP + FASTER * rate * (
+        hi - lo
+    )  # times far from zero cannot be halved so often
+    return float(np.max(left_over[told], initial=0.0))
 
 
 def _suspects(change: FloatArray) -> IntArray:
@@ -151,6 +162,11 @@ def _suspects(change: FloatArray) -> IntArray:
     around = np.pad(change, 1, mode="reflect")
     relative = change / (around[:-2] + around[2:] + GAP)
     return np.unique(np.append(np.argsort(relative)[-SUSPECTS:], np.argmax(change)))
+
+
+def rounding(curve: Curve, order: int) -> float:
+    """What rounding leaves of a rate of an order, over the spacing of keyframes to that order."""
+    return (NOISE if closed_forms(curve) else STENCIL)[order]
 
 
 def _floor(curve: Curve, order: int, size: float) -> float:

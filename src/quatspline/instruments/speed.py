@@ -24,6 +24,7 @@ from quatspline.instruments.timing import (
     Contender,
     OverBudget,
     Timing,
+    elapsed,
     interleaved,
     repeated,
 )
@@ -40,7 +41,8 @@ TOLERANCE = 1e-9
 """Of iterative schemes."""
 
 PATIENCE = {"quick": 0.02, "full": 0.1}
-"""Seconds that one call of a contender may take: slower ones get fewer samples of the same span."""
+"""Seconds that one call of a contender may take: slower ones get the first samples only,
+which lie as densely: some libraries take a step a segment."""
 PROBE = 100
 
 FEW, BUDGET = 1000, 5.0
@@ -120,19 +122,20 @@ def _floor(task: Task, name: str) -> Contender:
 
 
 def _affordable(task: Task, make: Callable[[int], Contender]) -> int:
-    """The items that a contender does within the task's patience, probed with a few."""
+    """The items that a contender does within the task's patience.
+
+    By ever larger probes: what a call costs whatever their number must not show in the time of one.
+    """
     if task.patience is None:
         return task.items
-    few = min(PROBE, task.items)
+    items = min(PROBE, task.items)
     while True:
-        probe = make(few)
+        probe = make(items)
         probe(1)  # what is compiled or cached on first use
-        start = time.perf_counter()
-        probe(1)
-        seconds = time.perf_counter() - start
-        if few == task.items or seconds > task.patience / 20:  # long enough to tell
-            return max(PROBE, min(task.items, int(few * task.patience / seconds)))
-        few = min(10 * few, task.items)
+        seconds = elapsed(probe, 1)
+        if items == task.items or seconds > task.patience / 2:
+            return items
+        items = min(task.items, int(items * min(10.0, task.patience / seconds)))
 
 
 # -- tasks ---------------------------------------------------------------------------------------
@@ -202,7 +205,7 @@ def _evaluation(
             raise ValueError("its library offers no threads")
 
         def make(items: int) -> Contender:
-            samples = t if items == t.size else t[:: -(-t.size // items)].copy()
+            samples = t[:items]
             out = curve(samples, order)
             return repeated(lambda: curve(samples, order, out=out, threads=threads))
 

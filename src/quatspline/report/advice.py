@@ -55,19 +55,19 @@ def recommendation(table: pd.DataFrame) -> list[Finding]:
     if quickest != best:
         found.append(_quickest(ledger, quickest, best))
     paper = table[(table["scheme"] == PAPERS) & table["failure"].isna()]
-    if best != PAPERS and len(paper) and np.isfinite(paper["torque"]).all():
+    if best != PAPERS and len(paper) and np.isfinite(paper["torque_over_least"]).all():
         found.append(_paper(ledger))
     return found
 
 
 def candidates(table: pd.DataFrame) -> pd.DataFrame:
-    """The rows among which the recommendation chooses, by torque."""
+    """The rows among which the recommendation chooses, by torque, those of equal torque by time."""
     pool = table[table["failure"].isna() & (table["misses"] <= MET) & np.isfinite(table["torque"])]
     if pool.empty:
         return pool
     smoothest = pool[pool["continuity"] >= min(2, pool["continuity"].max())]
     moving = smoothest[~(smoothest["key_speed"] < STOPS)]
-    return (moving if len(moving) else smoothest).sort_values("torque")
+    return (moving if len(moving) else smoothest).sort_values(["torque", "seconds_per_sample"])
 
 
 def _best(pool: pd.DataFrame) -> str:
@@ -90,12 +90,14 @@ def _first(ledger: Ledger, best: str, pool: pd.DataFrame) -> Finding:
     reach = (
         "a changed keyframe changes the curve nearby only" if local else "all keyframes shape it"
     )
+    torque = _cell(ledger, best, "torque_over_least")
+    share = "its torque is {torque:.3f} times the least of all schemes compared, and "
     parts = said(
         f"Take {best}: it passes through the keyframes (largest miss {{misses:.0e}} rad), is C{{k:.0f}} as measured "
-        f"here, its torque is {{torque:.3f}} times the least of all schemes compared, and {reach}.",
+        f"here, {share if np.isfinite(torque.value) else 'and '}{reach}.",
         misses=_cell(ledger, best, "misses"),
         k=_cell(ledger, best, "continuity"),
-        torque=_cell(ledger, best, "torque_over_least"),
+        torque=torque,
     )
     return Finding(ADVICE, parts)
 
