@@ -34,7 +34,7 @@ reproduce: $(VENV)/run ## The paper in full and every other experiment at quick 
 benchmark: $(VENV)/run ## Every experiment at full size (QUICK=1: all at quick size)
 	@$(RUN) run $(if $(QUICK),--quick,--full)
 
-benchmark-speed: $(VENV)/test ## The speed suite (pytest-benchmark), compared with its last run: TASK=evaluate
+benchmark-speed: $(VENV)/test ## The speed suite (pytest-benchmark) as times the floor, compared with its last run: TASK=evaluate
 	@$(BIN)/python -m pytest benchmarks -q --benchmark-only --benchmark-autosave --benchmark-compare \
 	  --benchmark-storage=file://results/benchmarks --benchmark-columns=median,iqr,rounds \
 	  --benchmark-max-time=0.3 --benchmark-min-rounds=3 \

@@ -1,8 +1,8 @@
 """The tasks of the speed table under pytest-benchmark: ``make benchmark-speed``.
 
-One group a task.  The floors stand in every group, and the number in brackets behind a time is its
-multiple of the fastest row, which is the floor of writing the result.  Rows are timed one after the
-other here; for ratios of schemes use the table of the experiment ``speed``, which interleaves them.
+One group a task, with the floors in every group.  Times and brackets of pytest-benchmark are of calls,
+and slow contenders do fewer items a call: the tables at the end compare per item.  Rows are timed one
+after the other here; for ratios of schemes use the experiment ``speed``, which interleaves them.
 """
 
 from __future__ import annotations
