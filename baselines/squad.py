@@ -18,9 +18,9 @@ TWO_A, SINGLE_A, TEXTBOOK = 0.0, 1.0, 2.0
 
 
 class Squad(SegmentCurve):
-    """Spherical and quadrangle interpolation (squad), Shoemake (1987), C^1 on arbitrary knots.
+    """Spherical and quadrangle interpolation (squad), Shoemake (1987), on arbitrary knots.
 
-    C^1, interpolating, local (four keyframes shape a segment); order 3 inside:
+    C^1 where every |h v - L| < 2 pi, interpolating, local (four keyframes shape a segment); order 3 inside:
 
         Q(u) = slerp(slerp(q_i, q_{i+1}; u), slerp(a_i^+, a_{i+1}^-; u); 2u(1 - u))              (1)
 
