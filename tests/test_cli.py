@@ -184,10 +184,28 @@ def test_list_imports_no_table_no_figure(desk: Desk) -> None:
             ["sample", "bad.csv", "--scheme", "stairs", "--count", "2"],
             "bad.csv, line 2: expected 5",
         ),
-        (["sample", "one.csv", "--scheme", "stairs", "--count", "2"], "at least 2 are needed"),
+        (
+            ["sample", "one.csv", "--scheme", "stairs", "--count", "2"],
+            ": one.csv: quaternions has 1 ",
+        ),
+        (
+            ["compare", "one.csv", "--schemes", "stairs"],
+            ": one.csv: quaternions has 1 keyframes: at",
+        ),
+        (
+            ["sample", "pair.csv", "--scheme", "three", "--count", "2"],
+            ": pair.csv: quaternions has 2 ",
+        ),
+        (
+            ["sample", "long.csv", "--scheme", "stairs", "--count", "2"],
+            ": long.csv: times span -1e+308 to 1e+308: too long for float64",
+        ),
         (["sample", "k.csv", "--scheme", "stairs", "--count", "2", "-o", "x.png"], "suffix '.png'"),
         (["sample", "k.csv", "--scheme", "stairs", "--count", "2", "-o", "n/x.csv"], "be written"),
-        (["sample", "uneven.csv", "--scheme", "stairs", "--count", "2", "--closed"], "last row"),
+        (
+            ["sample", "uneven.csv", "--scheme", "stairs", "--count", "2", "--closed"],
+            ": uneven.csv: closed",
+        ),
     ],
 )
 def test_bad_usage_and_bad_input_are_told_in_one_line(
@@ -202,10 +220,14 @@ def test_bad_usage_and_bad_input_are_told_in_one_line(
         monkeypatch.setenv(name, desk.environment[name])
     desk.experiment("errors")
     desk.scheme("stairs")
+    three = SCHEME.format(fit="pass").replace("    constant", "    min_keyframes = 3\n    constant")
+    (desk.folder / "schemes" / "three.py").write_text(three)
     (desk.folder / "schemes" / "broken.py").write_text("import nothing_of_this_name")
     desk.keyframes()
     desk.keyframes("bad.csv", "0,1,0,0,0\n1,1,0\n")
     desk.keyframes("one.csv", "0,1,0,0,0\n")
+    desk.keyframes("pair.csv")
+    desk.keyframes("long.csv", "-1e308,1,0,0,0\n1e308,0.8,0.6,0,0\n")
     desk.keyframes("uneven.csv", "0,1,0,0,0\n1,0.8,0.6,0,0\n5,0.6,0.8,0,0\n")
     status = cli.main(arguments)  # in this process: there are many, and others are processes
     output = capsys.readouterr()

@@ -149,6 +149,12 @@ def test_norms(scale: float, index: int) -> None:
             prepare(None, q)
 
 
+def test_a_span_beyond_float64_is_told_in_plain_numbers() -> None:
+    message = r"^times span -1e\+308 to 1e\+308: too long for float64$"
+    with pytest.raises(ValueError, match=message):
+        prepare([-1e308, 1e308], Q[:2])
+
+
 @settings(max_examples=60, deadline=None, derandomize=True)
 @given(st.lists(st.floats(-1e6, 1e6), min_size=2, max_size=9))
 def test_times_strictly_increase(times: list[float]) -> None:

@@ -11,8 +11,8 @@ import math
 import os
 import sys
 import traceback
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -265,9 +265,10 @@ def _sample(arguments: argparse.Namespace) -> int:
     if arguments.file is not None:
         files.check_suffix(arguments.file)
     motion = _motion(arguments)
-    curve = registry.build(
-        arguments.scheme, motion.times, motion.quaternions, closed=arguments.closed
-    )
+    with _naming(arguments.keyframes):
+        curve = registry.build(
+            arguments.scheme, motion.times, motion.quaternions, closed=arguments.closed
+        )
     times = _grid(*curve.domain, arguments.rate, arguments.count)
     samples = motion.sampled(times, curve(times))
     if arguments.file is None:
@@ -278,10 +279,23 @@ def _sample(arguments: argparse.Namespace) -> int:
 
 
 def _motion(arguments: argparse.Namespace) -> Motion:
+    from quatspline.keyframes import prepare
     from quatspline.trajectories import files
 
     motion = files.read(arguments.keyframes)
-    return motion.returning() if arguments.closed else motion
+    with _naming(arguments.keyframes):
+        motion = motion.returning() if arguments.closed else motion
+        prepare(motion.times, motion.quaternions, closed=arguments.closed)
+    return motion
+
+
+@contextmanager
+def _naming(path: str) -> Iterator[None]:
+    """What is wrong with the keyframes of a file is told with the file's name."""
+    try:
+        yield
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from error
 
 
 def _grid(first: float, last: float, rate: float | None, count: int | None) -> FloatArray:

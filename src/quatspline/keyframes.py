@@ -227,7 +227,7 @@ def _times(given: Any, n: int, closed: bool) -> FloatArray:
         return t.copy()
     _refuse_infinite("times", t)
     if stuck == t.size:
-        raise ValueError(f"times span {t[0]!r} to {t[-1]!r}: too long for float64")
+        raise ValueError(f"times span {float(t[0])!r} to {float(t[-1])!r}: too long for float64")
     raise ValueError(
         f"times[{stuck}] = {float(t[stuck])!r} does not exceed times[{stuck - 1}] = "
         f"{float(t[stuck - 1])!r}: times must strictly increase"
