@@ -18,7 +18,7 @@ from quatspline import running
 from quatspline.cli import main
 from quatspline.keyframes import prepare
 from quatspline.quaternion import exp
-from quatspline.report import choosing
+from quatspline.report import choosing, targets
 from quatspline.report import page as page_module
 from quatspline.report.findings import FINDINGS, findings, reader
 from quatspline.report.page import Scene, motion, write_page
@@ -154,6 +154,127 @@ def test_a_folder_without_tables_is_refused_in_one_line(
     assert wanting in told
     assert len(told.splitlines()) == 1
     assert not (tmp_path / "missing").exists()
+
+
+def refusal(folder: Path, capsys: pytest.CaptureFixture[str]) -> str:
+    """The one line in which the command refuses a folder."""
+    assert main(["report", "--out", str(folder)]) == 2
+    told = capsys.readouterr().err
+    assert len(told.splitlines()) == 1
+    assert not (folder / "report.html").exists()
+    return told.removeprefix("quatspline: ").removesuffix("\n")
+
+
+@pytest.fixture
+def spoilt(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with a table that is in order, for a file that is not."""
+    monkeypatch.setattr(page_module, "paper_scenes", list)
+    Results(tmp_path).table("x", pd.DataFrame({"a": [1]}))
+    return tmp_path
+
+
+@pytest.mark.parametrize("name", ["table1", "noise", "unheard-of"])
+@pytest.mark.parametrize("content", [b"", b'a,b\n"1,2\n', b"\x89PNG\r\n\x1a\n\x00"])
+def test_a_file_that_is_no_table_is_refused_by_name(
+    spoilt: Path, name: str, content: bytes, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (spoilt / f"{name}.csv").write_bytes(content)
+    assert refusal(spoilt, capsys).startswith(f"{spoilt / name}.csv: not a table in CSV: ")
+
+
+@pytest.mark.parametrize("column", ["case", "protocol", "paper_iterations", "seconds_median"])
+def test_a_table_without_a_column_is_refused_by_name(
+    spoilt: Path, column: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table = Results(REFERENCE).read_table("table1").drop(columns=column)
+    table.to_csv(spoilt / "table1.csv", index=False)
+    assert refusal(spoilt, capsys) == f"{spoilt / 'table1.csv'}: no column '{column}'"
+
+
+@pytest.mark.parametrize(
+    ("table", "column"), [("table1", "seconds_median"), ("speed", "nanoseconds_per_item")]
+)
+def test_text_in_place_of_numbers_is_refused_by_name(
+    spoilt: Path, table: str, column: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    frame = Results(REFERENCE).read_table(table)
+    frame.assign(**{column: "many"}).to_csv(spoilt / f"{table}.csv", index=False)
+    assert refusal(spoilt, capsys).startswith(f"{spoilt / table}.csv: ")
+
+
+@pytest.mark.parametrize("table", sorted(path.stem for path in REFERENCE.glob("*.csv")))
+def test_a_table_with_one_column_makes_a_page_or_is_refused_by_name(
+    spoilt: Path, table: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    frame = Results(REFERENCE).read_table(table)
+    frame.iloc[:, -1:].to_csv(spoilt / f"{table}.csv", index=False)
+    status, told = main(["report", "--out", str(spoilt)]), capsys.readouterr().err
+    assert status == 0 or told.startswith(f"quatspline: {spoilt / table}.csv: no column ")
+
+
+def test_a_quote_of_what_is_no_number_names_its_cell() -> None:
+    with pytest.raises(ValueError, match=r"^t\.csv\[n=1\]\.x: "):
+        str(Quote((Cell("t", {"n": 1}, "x", "many"),), spec=".3g"))
+
+
+MANIFESTS = {
+    '{"cpu": 3}': "cpu: an object is expected, found 3",
+    '{"cpu": {"model": "A"}}': "cpu: 'cores' is missing",
+    '{"git": "abc"}': "git: an object is expected, found 'abc'",
+    '{"command": "run"}': "command: a list is expected, found 'run'",
+    '{"end": 5}': "end: text is expected, found 5",
+    '{"sizes": []}': "sizes: an object is expected, found []",
+    '{"experiments": {"x": 1}}': "experiments: x: an object is expected, found 1",
+    '{"experiments": {"x": {}}}': "experiments: x: 'size' is missing",
+    '{"command": ["quat': "not a file in JSON: Unterminated string",
+    "": "not a file in JSON: Expecting value",
+    "[]": "a JSON object is expected, found list",
+}
+
+
+@pytest.mark.parametrize("content", MANIFESTS)
+def test_a_manifest_that_no_run_wrote_is_refused_and_kept(
+    spoilt: Path, content: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = spoilt / "manifest.json"
+    path.write_text(content)
+    assert refusal(spoilt, capsys).startswith(f"{path}: {MANIFESTS[content]}")
+    assert path.read_text() == content
+
+
+def test_a_manifest_may_lack_what_is_not_known(spoilt: Path) -> None:
+    cpu = {"model": "Abacus", "cores": 1, "usable": 1}
+    bare = {"cpu": cpu, "end": None, "git": None, "experiments": None}
+    for manifest in ({}, bare):
+        (spoilt / "manifest.json").write_text(json.dumps(manifest))
+        text = write_page(spoilt).read_text(encoding="utf-8")
+        assert ("<dd>Abacus, 1 of 1 cores usable</dd>" in text) == bool(manifest)
+
+
+# -- the speed targets --------------------------------------------------------------------------
+
+
+def test_speed_targets_stand_above_their_table(html: str, page_folder: Path) -> None:
+    section = html.partition('<section id="speed">')[2].partition("</section>")[0]
+    read = reader(page_folder)
+    shown = [targets.cells(verdict) for verdict in targets.verdicts(read)]
+    cells = re.findall(r"<td>(.*?)</td>", section.partition('id="result-speed"')[0])
+    assert cells == [cell for row in shown for cell in row[1:]]
+    heads = re.findall(r'<th scope="row">(.*?)</th>', section)
+    assert [re.sub("</?code>", "`", head) for head in heads] == [row[0] for row in shown]
+    manifest = json.loads((page_folder / "manifest.json").read_text(encoding="utf-8"))
+    assert targets.measured_on(manifest) in section
+    assert manifest["cpu"]["model"] in section
+    assert "<code>quartic</code> agrees with evaluation in 50 digits" in section
+
+
+def test_targets_that_a_speed_table_does_not_reach_say_why(tmp_path: Path) -> None:
+    speed = Results(REFERENCE).read_table("speed")
+    quick = speed[(speed["task"] == "set-up") & (speed["scheme"] == "quartic")]
+    Results(tmp_path).table("speed", quick)
+    page = write_page(tmp_path, scenes=[]).read_text(encoding="utf-8")
+    assert "Measured on a machine that no manifest names." in page
+    assert page.count("<td>not measured: ") == len(targets.TARGETS) - 1
 
 
 @pytest.mark.parametrize(

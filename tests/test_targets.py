@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -35,7 +37,7 @@ def test_a_value_is_to_stay_at_or_below_its_bound(fill, met):
     verdict = judged(table(fill=fill))[FILL]
     assert verdict.value == fill
     assert verdict.met is met
-    assert str(verdict) == ("met" if met else "**falls short**")
+    assert str(verdict) == ("met" if met else "falls short")
 
 
 @pytest.mark.parametrize(("peer", "met"), [(1200.0, True), (1000.0, True), (990.0, False)])
@@ -78,3 +80,36 @@ def test_the_markdown_says_all_three():
     assert f"| {PEER} | ≥ 10 x | 12 x | met |" in lines
     assert f"| {IMPORT} | ≤ 0.1 s | 0.1 s | met |" in lines
     assert sum("| not measured: " in line for line in lines) == len(targets.TARGETS) - 3
+
+
+def test_the_sentence_on_accuracy_is_what_a_test_asserts():
+    source = (Path(__file__).parent / "test_paper.py").read_text(encoding="utf-8")
+    test = source.partition("def test_ten_thousand_random_samples_err_by_four_ulp_at_most")[2]
+    body = test.partition("\ndef ")[0]
+    assert "qs.QuarticSpline" in body
+    assert "assert worst < 1e-15" in body
+    assert "179.0), 500)" in body
+    assert "1 << 40, 20)" in body
+    assert "DIGITS = 50\n" in source
+
+
+MACHINE = {"model": "A 1", "cores": 2, "usable": 2}
+
+
+@pytest.mark.parametrize(
+    ("run", "said"),
+    [
+        ({}, "Measured on a machine that no manifest names."),
+        (
+            {"cpu": MACHINE, "versions": {"python": "3.1", "numpy": "2", "numba": "0.6"}}
+            | {"end": "2026-01-02T03:04:05", "sizes": {"speed": "full"}},
+            "Measured on A 1, 2 cores, Python 3.1, numba 0.6, 2026-01-02.",
+        ),
+        (
+            {"cpu": MACHINE, "end": None, "sizes": {"speed": "quick"}},
+            "Measured on A 1, 2 cores. At quick size: fewer samples and shorter rounds than the targets ask for.",
+        ),
+    ],
+)
+def test_the_machine_is_named_and_a_quick_run_is_said_to_be_one(run, said):
+    assert targets.measured_on(run) == said

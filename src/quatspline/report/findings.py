@@ -52,7 +52,7 @@ def _decisions(read: Reader) -> list[Finding]:
         return [
             Finding(choosing.TABLE, parts) for parts in choosing.decisions(read(choosing.TABLE))
         ]
-    except FileNotFoundError:
+    except (FileNotFoundError, LookupError):
         return []
 
 

@@ -62,7 +62,10 @@ class Quote:
         return next((cell for cell in self.cells if cell.value == self.value), self.cells[0])
 
     def __str__(self) -> str:
-        return format(self.value, self.spec)
+        try:
+            return format(self.value, self.spec)
+        except (TypeError, ValueError) as error:  # text where a number is expected
+            raise ValueError(f"{self.cells[0]}: {error}") from error
 
 
 Span = tuple[Quote, Quote]

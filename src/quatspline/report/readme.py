@@ -81,11 +81,8 @@ def schemes_block() -> str:
 def speed_block() -> str:
     """The speed targets with the machine that they were measured on, from the reference tables."""
     run = read_json(REFERENCE / MANIFEST)
-    cpu, known = run["cpu"], run["versions"]
-    where = (
-        f"{cpu['model']}, {cpu['cores']} cores, Python {known['python']}, numba {known['numba']}"
-    )
-    return f"Measured on {where}, {run['end'][:10]}.\n\n{targets.markdown(reader(REFERENCE))}"
+    table = targets.markdown(reader(REFERENCE))
+    return f"{targets.measured_on(run)}\n\n{table}\n\n{targets.ACCURACY}"
 
 
 BLOCKS: dict[str, Callable[[], str]] = {

@@ -89,10 +89,17 @@ class Results:
         return table
 
     def read_table(self, name: str) -> pd.DataFrame:
-        """A table of this folder; an empty field is missing, any other text is itself."""
+        """A table of this folder; an empty field is missing, any other text is itself.
+
+        Raises FileNotFoundError where there is none, ValueError with the path for what is no table.
+        """
         import pandas as pd
 
-        return pd.read_csv(self.folder / f"{name}.csv", keep_default_na=False, na_values=[""])
+        path = self.folder / f"{name}.csv"
+        try:
+            return pd.read_csv(path, keep_default_na=False, na_values=[""])
+        except ValueError as error:  # pandas tells what is wrong, but not where
+            raise ValueError(f"{path}: not a table in CSV: {error}") from error
 
     def figure(self, name: str, figure: Figure) -> None:
         """Write ``<name>.png`` and ``<name>.svg``, the same bytes every time."""
@@ -130,7 +137,7 @@ class Results:
         """Open the manifest of a run.  Entries of earlier runs stay while their files do."""
         for aside in self.folder.glob(".*.part"):
             aside.unlink(missing_ok=True)  # of a run that was killed
-        earlier = self.manifest.get("experiments", {})
+        earlier = self.manifest.get("experiments") or {}
         kept = {
             name: entry for name, entry in earlier.items() if self.intact(entry.get("files", {}))
         }
@@ -153,7 +160,7 @@ class Results:
         """Write the manifest with every file now in the folder (after adding a page, say)."""
         names = sorted(path.name for path in self.folder.iterdir() if path.is_file())
         files = [name for name in names if name != MANIFEST and not name.startswith(".")]
-        entries = dict(sorted(self.manifest.get("experiments", {}).items()))
+        entries = dict(sorted((self.manifest.get("experiments") or {}).items()))
         sizes = {name: entry["size"] for name, entry in entries.items() if "size" in entry}
         digests = {name: sha256(self.folder / name) for name in files}
         self.manifest |= {"sizes": sizes, "experiments": entries, "files": digests}
@@ -286,10 +293,19 @@ def sha256(path: Path) -> str:
 def read_json(path: Path) -> dict[str, Any]:
     """The object in a JSON file; {} where there is none that can be read."""
     with suppress(OSError, ValueError):
-        content = json.loads(path.read_text(encoding="utf-8"))
-        if isinstance(content, dict):
-            return content
+        return json_object(path)
     return {}
+
+
+def json_object(path: Path) -> dict[str, Any]:
+    """The object in a JSON file; a ValueError with the path for anything else."""
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise ValueError(f"{path}: not a file in JSON: {error}") from error
+    if not isinstance(content, dict):
+        raise ValueError(f"{path}: a JSON object is expected, found {type(content).__name__}")
+    return content
 
 
 def write_json(path: Path, content: Mapping[str, Any]) -> None:

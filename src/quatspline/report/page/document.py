@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from quatspline import __version__
+from quatspline.report import targets
 from quatspline.report.findings import Finding, findings
 from quatspline.report.page import plots, sections
 from quatspline.report.page.folder import Folder
@@ -33,6 +34,16 @@ TOPICS = {
     "protocol": "What is protocol",
     "recommendation": "Recommendation",
 }
+MAKERS: dict[str, Callable[[Folder], Any]] = {
+    "table1": lambda folder: side_by_side(folder.frame("table1")),
+    "speed": lambda folder: {
+        "where": targets.measured_on(folder.manifest),
+        "rows": [targets.cells(verdict) for verdict in targets.verdicts(folder.frame)],
+        "note": targets.ACCURACY,
+    },
+}
+"""What templates of sections show that is made from tables, by the section's block."""
+
 ADDED = "What the measurements add"
 """Headings of the findings; every further topic is under the last."""
 
@@ -71,7 +82,11 @@ def _environment() -> Environment:
     options: dict[str, Any] = {"trim_blocks": True, "lstrip_blocks": True}
     loader = FileSystemLoader(ASSETS)
     environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, **options)
-    environment.filters |= {"quote": quote_attributes, "embedded": embedded}
+    environment.filters |= {
+        "quote": quote_attributes,
+        "embedded": embedded,
+        "coded": coded,
+    }
     environment.tests["quote"] = lambda part: isinstance(part, Quote)
     return environment
 
@@ -98,8 +113,20 @@ def _filled(section: Section, folder: Folder, motions: bool) -> dict[str, Any] |
     tables = [_table(name, section, folder) for name in section.tables if name in folder.tables]
     if not tables and not (section.needs_scenes and motions):
         return None
-    rows = side_by_side(folder.frame("table1")) if section.block == "table1" else []
-    return {"section": section, "tables": tables, "side_by_side": rows}
+    return {"section": section, "tables": tables, "made": _made(section, folder)}
+
+
+def _made(section: Section, folder: Folder) -> Any:
+    """What the section's own template shows beside its tables.
+
+    Raises ValueError that names the tables if they lack a column, or hold what they cannot.
+    """
+    try:
+        return MAKERS.get(section.block, lambda folder: None)(folder)
+    except (LookupError, TypeError, ValueError) as error:
+        files = ", ".join(str(folder.path / f"{name}.csv") for name in section.tables)
+        what = f"no column {error}" if isinstance(error, KeyError) else error
+        raise ValueError(f"{files}: {what}") from error
 
 
 def _table(name: str, section: Section, folder: Folder) -> dict[str, Any]:
@@ -153,6 +180,12 @@ def _plain(value: Any) -> Any:
     if isinstance(value, dict):
         return {key: _plain(item) for key, item in value.items()}
     return value.item() if hasattr(value, "item") else value
+
+
+def coded(text: str) -> Markup:
+    """Text in which what stands between backticks is code."""
+    kinds = (Markup("{}"), Markup("<code>{}</code>"))
+    return Markup("").join(kinds[i % 2].format(part) for i, part in enumerate(text.split("`")))
 
 
 # -- data ---------------------------------------------------------------------------------------

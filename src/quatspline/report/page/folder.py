@@ -4,17 +4,29 @@ from __future__ import annotations
 
 import csv
 import re
+import reprlib
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-import pandas as pd
-
-from quatspline.report.results import MANIFEST, Results, read_json
+from quatspline.report.findings import reader
+from quatspline.report.results import MANIFEST, json_object
 
 OWN_WORDS = {"table1": "Table 1", "edge-cases": "Edge cases"}
 """Names of tables that are not their name capitalised."""
+
+NAMES: dict[type, str] = {str: "text", list: "a list", dict: "an object"}
+KINDS: dict[str, type] = {
+    **dict.fromkeys(("start", "end", "platform"), str),
+    "command": list,
+    **dict.fromkeys(("cpu", "git", "seeds", "versions", "experiments", "sizes"), dict),
+}
+"""What the page reads of a manifest; null counts as empty: a run that was cut short has no end."""
+
+KEYS = {"cpu": ("model", "cores", "usable"), "git": ("revision", "dirty")}
+ENTRY = ("size", "seed", "seconds")
+"""What an object of the manifest holds unless it is empty, and what every experiment's entry does."""
 
 
 @dataclass(frozen=True)
@@ -49,12 +61,17 @@ class Picture:
 
 
 class Folder:
-    """A results folder, read."""
+    """A results folder, read; `frame` gives a table of it by name.
+
+    Raises ValueError for a folder that is not there or holds no table, and for a file that cannot be read as
+    what its name says, with its path.
+    """
 
     def __init__(self, path: Path) -> None:
         self.path = path
         if not path.is_dir():
             raise ValueError(f"{path}: no such folder; quatspline run makes it")
+        self.frame = reader(path)
         if not self.tables:
             raise ValueError(f"{path}: no table in this folder; quatspline run writes them")
 
@@ -74,8 +91,12 @@ class Folder:
 
     @cached_property
     def manifest(self) -> dict[str, Any]:
-        """What the manifest holds; {} where there is none."""
-        return read_json(self.path / MANIFEST)
+        """What the manifest holds, empty what it lacks; {} where there is none.
+
+        Raises ValueError for one that is torn, or whose parts are not what a run writes.
+        """
+        path = self.path / MANIFEST
+        return _manifest(path) if path.is_file() else {}
 
     @property
     def failures(self) -> dict[str, str]:
@@ -83,11 +104,8 @@ class Folder:
         entries = self.manifest.get("experiments", {}).items()
         return {name: entry["failure"] for name, entry in entries if entry.get("failure")}
 
-    def frame(self, name: str) -> pd.DataFrame:
-        """A table as a frame."""
-        return Results(self.path).read_table(name)
-
     def _table(self, path: Path) -> Table:
+        self.frame(path.stem)  # refuses what is no table, before anything is written
         title, note = _heading(_read(path.with_suffix(".md")))
         fallback = OWN_WORDS.get(path.stem, path.stem.replace("-", " ").capitalize())
         text = path.read_bytes().decode("utf-8")  # as it is, for downloading
@@ -95,7 +113,32 @@ class Folder:
 
 
 def _read(path: Path) -> str:
-    return path.read_text(encoding="utf-8").strip() if path.is_file() else ""
+    if not path.is_file():
+        return ""
+    try:
+        return path.read_text(encoding="utf-8").strip()
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{path}: not a text file: {error}") from error
+
+
+def _manifest(path: Path) -> dict[str, Any]:
+    manifest = json_object(path)
+    for name, kind in KINDS.items():
+        given = manifest.get(name)
+        manifest[name] = kind() if given is None else given
+        _expect(f"{path}: {name}", manifest[name], kind, KEYS.get(name, ()) if given else ())
+    for name, entry in manifest["experiments"].items():
+        _expect(f"{path}: experiments: {name}", entry, dict, ENTRY)
+    return manifest
+
+
+def _expect(where: str, value: Any, kind: type[Any], keys: tuple[str, ...]) -> None:
+    """Refuse a value of another kind, and an object that lacks one of the keys."""
+    if not isinstance(value, kind):
+        raise ValueError(f"{where}: {NAMES[kind]} is expected, found {reprlib.repr(value)}")
+    lacking = [key for key in keys if key not in value]
+    if lacking:
+        raise ValueError(f"{where}: {lacking[0]!r} is missing")
 
 
 def _heading(markdown: str) -> tuple[str, str]:

@@ -178,6 +178,13 @@ SECTIONS: tuple[Section, ...] = (
         ),
     ),
     Section(
+        "speed",
+        "Speed",
+        "What was asked of it, what was measured, and whether that is met. Ratios are between rows of one run.",
+        ("speed",),
+        block="speed",
+    ),
+    Section(
         "continuity",
         "Continuity",
         "Jumps of one-sided limits at keyframes, and the k of C^k that follows.",
