@@ -61,10 +61,15 @@ class Picture:
 
 
 class Folder:
-    """A results folder, read; `frame` gives a table of it by name.
+    """A results folder, read.
 
-    Raises ValueError for a folder that is not there or holds no table, and for a file that cannot be read as
-    what its name says, with its path.
+    Attributes
+    ----------
+    frame : gives a table by its name
+    manifest : what the manifest holds, empty what it lacks; {} where there is none
+
+    Raises ValueError for a folder that is not there or holds no table, and with the path for a file that
+    is not what its name says.
     """
 
     def __init__(self, path: Path) -> None:
@@ -74,6 +79,8 @@ class Folder:
         self.frame = reader(path)
         if not self.tables:
             raise ValueError(f"{path}: no table in this folder; quatspline run writes them")
+        manifest = path / MANIFEST
+        self.manifest = _manifest(manifest) if manifest.is_file() else {}
 
     @cached_property
     def tables(self) -> dict[str, Table]:
@@ -88,15 +95,6 @@ class Folder:
             path.stem: Picture(path.stem, _read(path), _read(path.with_suffix(".caption.txt")))
             for path in found
         }
-
-    @cached_property
-    def manifest(self) -> dict[str, Any]:
-        """What the manifest holds, empty what it lacks; {} where there is none.
-
-        Raises ValueError for one that is torn, or whose parts are not what a run writes.
-        """
-        path = self.path / MANIFEST
-        return _manifest(path) if path.is_file() else {}
 
     @property
     def failures(self) -> dict[str, str]:
@@ -122,6 +120,7 @@ def _read(path: Path) -> str:
 
 
 def _manifest(path: Path) -> dict[str, Any]:
+    """A manifest, refused if it is torn or its parts are not what a run writes."""
     manifest = json_object(path)
     for name, kind in KINDS.items():
         given = manifest.get(name)
