@@ -180,7 +180,7 @@ SECTIONS: tuple[Section, ...] = (
     Section(
         "speed",
         "Speed",
-        "What was asked of it, what was measured, and whether that is met. Ratios are between rows of one run.",
+        "Bounds, what was measured, and whether they are met. Ratios are between rows of one run.",
         ("speed",),
         block="speed",
     ),
