@@ -33,6 +33,9 @@ OWN: dict[str, dict[str, Any]] = {
 }
 """Schemes that every figure tells apart at a glance; all others get theirs from their name."""
 
+SEED = 802
+"""Of the names' checksums: the least with which no two schemes of the catalogue share colour and marker."""
+
 RC: Any = {
     "figure.dpi": 150,
     "savefig.facecolor": "white",
@@ -62,11 +65,11 @@ def scheme_style(name: str) -> dict[str, Any]:
     """Colour, marker and line style of a scheme: the same in every figure and every run."""
     if name in OWN:
         return {"linestyle": "-", **OWN[name]}
-    seed = zlib.crc32(name.encode())
+    lot = zlib.crc32(name.encode(), SEED)
     return {
-        "color": PALETTE[seed % len(PALETTE)],
-        "marker": MARKERS[seed // 8 % len(MARKERS)],
-        "linestyle": DASHES[1 + seed // 128 % 3],
+        "color": PALETTE[lot % len(PALETTE)],
+        "marker": MARKERS[lot // 8 % len(MARKERS)],
+        "linestyle": DASHES[1 + lot // 128 % 3],
     }
 
 
