@@ -57,6 +57,13 @@ def caption(table):
     return f"{len(table)} rows, from {table['scheme'][0]}."
 """
 
+DERIVED = """
+import pandas as pd
+TITLE, PAPER = "Total", False
+def derive(run, read):
+    return pd.DataFrame({"x": [read("errors")["x"].sum()]})
+"""
+
 
 class Desk:
     """A folder with schemes, experiments and keyframes, and the command run in it."""
@@ -464,6 +471,20 @@ def test_two_experiments_of_one_name_are_refused(desk: Desk) -> None:
     both = os.pathsep.join(str(desk.folder / name) for name in ("experiments", "more"))
     desk.environment["QUATSPLINE_EXPERIMENTS"] = both
     assert "two experiments are called 'a'" in refused(desk("run", "a"))
+
+
+def test_derived_tables_follow_those_they_are_made_of(desk: Desk) -> None:
+    desk.experiment("errors", figure=False)
+    (desk.folder / "experiments" / "total.py").write_text(DERIVED)
+    alone = refused(desk("run", "total"), status=1)
+    assert "FileNotFoundError" in alone
+    assert desk("run", "total", "errors", "--full").returncode == 0
+    folder = desk.folder / "results"
+    for seed in (1, 2):
+        assert desk("run", "errors", "--seed", seed).returncode == 0
+        errors, total = (pd.read_csv(folder / f"{name}.csv") for name in ("errors", "total"))
+        assert total["x"].item() == pytest.approx(errors["x"].sum())
+        assert desk.manifest()["sizes"] == {"errors": "quick", "total": "full"}
 
 
 @pytest.mark.parametrize(

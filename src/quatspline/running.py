@@ -38,8 +38,8 @@ def run(
     One that fails is told on stderr and the rest still run.  What an interrupted run of the same
     options and sources had finished is kept.  ``size`` is by default full for the paper's, quick
     for the others.  Cells are measured by ``jobs`` processes, by default one a core, or by the Dask
-    scheduler at an address.  A run of all experiments ends with the page, and so does any into a
-    folder that has one.  Raises ValueError for unknown or unusable names, for ``schemes`` without
+    scheduler at an address.  A run of all experiments ends with derived tables and the page, and so
+    does any into a folder that has them.  Raises ValueError for unknown or unusable names, for ``schemes`` without
     one, and without a scheduler.
     """
     if schemes is not None and not schemes:
@@ -52,6 +52,9 @@ def run(
     }
     with sweeps.workers(jobs, dask):
         results = Results(out)
+        for experiment, as_before in _outdated(chosen, results):
+            chosen.append(experiment)
+            runs[experiment.name] = as_before
         journal = Journal(results, fingerprint(runs))
         results.begin(command, seed=seed, schemes=picked)
         for experiment in chosen:
@@ -59,10 +62,21 @@ def run(
     results.finish()
     journal.close()
     failed = [e.name for e in chosen if results.manifest["experiments"][e.name]["failure"]]
-    # A page that is there already must not show what the tables no longer say.
+    # As derived tables, a page that is there already must not show what the others no longer say.
     if not names or (results.folder / PAGE).is_file():
         failed += _write_page(results)
     return failed
+
+
+def _outdated(chosen: Sequence[Experiment], results: Results) -> list[tuple[Experiment, Run]]:
+    """Derived experiments of the folder that would not be run, with what they were asked for."""
+    earlier = results.manifest.get("experiments") or {}
+    others = sorted((set(earlier) & set(found())) - {e.name for e in chosen})
+    derived = [e for e in (experiments(others) if others else []) if e.derived]
+    entries = [(e, earlier[e.name]) for e in derived]
+    return [
+        (e, Run(entry["size"] == "quick", entry["schemes"], entry["seed"])) for e, entry in entries
+    ]
 
 
 def _write_page(results: Results) -> list[str]:
