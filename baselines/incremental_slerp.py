@@ -45,6 +45,7 @@ class IncrementalSlerp(SegmentCurve):
     order = 2
     support = 2
     constant_rate = "everywhere"
+    practical_keyframes = 100_000
     family = ARC
     operations = {"slerps per sample": 1, "logs per keyframe": 65}
 

@@ -145,7 +145,7 @@ class Curve(abc.ABC):
     """The third-party distribution that it wraps."""
     min_keyframes: ClassVar[int] = 2
     practical_keyframes: ClassVar[int | None] = None
-    """Keyframes beyond which experiments with many sets leave its cells out, on any machine."""
+    """Keyframes beyond which experiments leave it out, on any machine: time or memory would not do."""
     orders: tuple[int, ...] = (0, 1, 2)
     """Orders that a call offers; a peer may lack some."""
     operations: dict[str, float] = {}

@@ -173,11 +173,17 @@ def _options(name: str) -> dict[str, Any]:
     return {"tolerance": TOLERANCE} if "tolerance" in declared(scheme(name)._fit) else {}
 
 
-def _curve(name: str, keyframes: FloatArray) -> Curve:
+def _practical(name: str, count: int) -> type[Curve]:
+    """The scheme, unless it says that so many keyframes are too many for it."""
     cls = scheme(name)
     limit = cls.practical_keyframes
-    if limit is not None and len(keyframes) > limit:
+    if limit is not None and count > limit:
         raise OverBudget(f"over budget beyond {limit} keyframes")
+    return cls
+
+
+def _curve(name: str, keyframes: FloatArray) -> Curve:
+    cls = _practical(name, len(keyframes))
     if cls.peer is not None and len(keyframes) > FEW:  # the cost may grow with the square
         start = time.perf_counter()
         cls(None, keyframes[:FEW])
@@ -243,8 +249,8 @@ def _long(name: str, keyframes: FloatArray) -> Task:
     t = np.arange(len(keyframes) - 1.0) + 0.5
 
     def work(who: str) -> Callable[[int], Contender]:
-        cls, options = scheme(who), _options(who)
-        if cls.peer is not None or cls.practical_keyframes is not None:
+        cls, options = _practical(who, len(keyframes)), _options(who)
+        if cls.peer is not None:
             raise OverBudget
         return lambda items: repeated(lambda: cls(None, keyframes, **options)(t))
 
