@@ -29,17 +29,15 @@ from llvmlite import ir
 from numba.core import types
 from numba.extending import intrinsic
 
-BLOCK = 64
-"""Samples in a block: the sheet of one block stays within the first-level cache."""
+BLOCK = 48
+"""Samples in a block: its sheet stays within the first-level cache, and rows no power of two apart
+do not compete for the same places there."""
 
 ROWS = 64
 """Rows of a sheet: 0 holds u, 1 holds 1/h, 2... the segment's constants, the last four the result."""
 
 CONSTANTS = 2
 """The first row of the segment's constants."""
-
-SCRATCH = ROWS - 16
-"""The first of twelve rows for intermediate results: short loops over them fill the pipeline."""
 
 RESULT = ROWS - 4
 """The first row of the result: w, x, y, z of a quaternion or x, y, z of a rate."""
