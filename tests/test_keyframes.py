@@ -155,13 +155,24 @@ def test_a_span_beyond_float64_is_told_in_plain_numbers() -> None:
         prepare([-1e308, 1e308], Q[:2])
 
 
+def test_times_that_float64_does_not_tell_apart_are_refused() -> None:
+    message = (
+        r"^times\[2\] = 2\.0 is too close to times\[1\] = 1\.0, 1e\+17 after times\[0\]: float64"
+    )
+    with pytest.raises(ValueError, match=message):
+        prepare([-1e17, 1.0, 2.0], np.tile([1.0, 0, 0, 0], (3, 1)))
+
+
 @settings(max_examples=60, deadline=None, derandomize=True)
 @given(st.lists(st.floats(-1e6, 1e6), min_size=2, max_size=9))
 def test_times_strictly_increase(times: list[float]) -> None:
     q = np.tile(Q[0], (len(times), 1))
     stuck = [i for i in range(1, len(times)) if not times[i] > times[i - 1]]
     if stuck:
-        with pytest.raises(ValueError, match=rf"^times\[{stuck[0]}\] = "):
+        with pytest.raises(ValueError, match=rf"^times\[{stuck[0]}\] = .* does not exceed"):
+            prepare(times, q)
+    elif (np.diff(np.array(times) - times[0]) == 0.0).any():
+        with pytest.raises(ValueError, match="too close"):
             prepare(times, q)
     else:
         assert np.array_equal(prepare(times, q).times, times)

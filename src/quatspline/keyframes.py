@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -27,6 +26,8 @@ class Keyframes:
     Attributes
     ----------
     times : (n,) or, closed, (n + 1,) float64, as given; the last of a closed set is the return
+    knots : times since the first, (n,) or (n + 1,): all work is done in these
+    spacings : knot spacings h, one a segment: (n - 1,) or, closed, (n,)
     tracks : (K, n, 4) float64, unit quaternions, neighbours on one hemisphere unless kept as given
     track_shape : the shape whose product is K; () for a single track
     closed : whether the last keyframe leads back to the first
@@ -34,20 +35,12 @@ class Keyframes:
     """
 
     times: FloatArray
+    knots: FloatArray
+    spacings: FloatArray
     tracks: FloatArray
     track_shape: tuple[int, ...]
     closed: bool
     signs: FloatArray
-
-    @cached_property
-    def knots(self) -> FloatArray:
-        """Times since the first, (n,) or (n + 1,): all work is done in these."""
-        return self.times - self.times[0]
-
-    @cached_property
-    def spacings(self) -> FloatArray:
-        """Knot spacings h, one a segment: (n - 1,) or, closed, (n,)."""
-        return self.knots[1:] - self.knots[:-1]
 
     @property
     def quaternions(self) -> FloatArray:
@@ -81,7 +74,8 @@ class Keyframes:
 
     def track(self, k: int) -> Keyframes:
         """The keyframes of one track."""
-        return Keyframes(self.times, self.tracks[k : k + 1], (), self.closed, self.signs[k : k + 1])
+        own = slice(k, k + 1)
+        return replace(self, tracks=self.tracks[own], track_shape=(), signs=self.signs[own])
 
     def shaped(self) -> FloatArray:
         """The keyframes in the caller's shape (n, *track_shape, 4)."""
@@ -118,7 +112,7 @@ def prepare(
     """
     q = _quaternions(quaternions, min_keyframes)
     n = q.shape[0]
-    t = np.arange(n + closed, dtype=float) if times is None else _times(times, n, closed)
+    t, knots, spacings = _times(np.arange(n + closed) if times is None else times, n, closed)
     if closing_sign is not None and (align or not closed or closing_sign not in (1, -1)):
         raise ValueError(
             f"closing_sign={closing_sign!r}: give 1 or -1, and only with closed=True, align=False"
@@ -128,10 +122,10 @@ def prepare(
     tracks, signs = np.empty((rows.shape[1], n, 4)), np.empty(rows.shape[1])
     if not _take(rows, bool(align), bool(closed), float(closing_sign or 1), tracks, signs):
         _explain(q)
-    keyframes = Keyframes(t, tracks, track_shape, bool(closed), signs)
+    keyframes = Keyframes(t, knots, spacings, tracks, track_shape, bool(closed), signs)
     if not align:
         _refuse_antipodes(keyframes)
-    for array in (t, tracks, signs):
+    for array in (t, knots, spacings, tracks, signs):
         array.setflags(write=False)
     return keyframes
 
@@ -216,32 +210,48 @@ def _explain(q: FloatArray) -> None:
     )
 
 
-def _times(given: Any, n: int, closed: bool) -> FloatArray:
+def _times(given: Any, n: int, closed: bool) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Times, times since the first, and spacings."""
     t = _array("times", given)
     if t.shape != (n + closed,):
         _refuse_infinite("times", t)
         wanted = f"({n + closed},)" + (" (one more than keyframes: the return)" if closed else "")
         raise ValueError(f"times has shape {t.shape}: expected {wanted} for {n} keyframes")
-    stuck = _first_stuck(t)
-    if stuck < 0:
-        return t.copy()
-    _refuse_infinite("times", t)
-    if stuck == t.size:
-        raise ValueError(f"times span {float(t[0])!r} to {float(t[-1])!r}: too long for float64")
-    raise ValueError(
-        f"times[{stuck}] = {float(t[stuck])!r} does not exceed times[{stuck - 1}] = "
-        f"{float(t[stuck - 1])!r}: times must strictly increase"
-    )
+    knots, spacings = np.empty(t.size), np.empty(t.size - 1)
+    if not _space(t, knots, spacings):
+        _explain_times(t, knots)
+    return t.copy(), knots, spacings
 
 
 @compiled
-def _first_stuck(t):
-    """The first index whose time does not exceed the one before; the size if the span is infinite;
-    otherwise -1."""
-    for i in range(1, t.size):
-        if not t[i] > t[i - 1]:
-            return i
-    return -1 if abs(t[t.size - 1] - t[0]) < math.inf else t.size
+def _space(t, knots, spacings):
+    """Fill in times since the first and their spacings; whether all are positive and finite."""
+    for i in range(t.size):
+        knots[i] = t[i] - t[0]
+    bad = 0
+    for i in range(spacings.size):
+        spacings[i] = knots[i + 1] - knots[i]
+        bad += not 0.0 < spacings[i] < math.inf
+    return bad == 0
+
+
+def _explain_times(t: FloatArray, knots: FloatArray) -> None:
+    """Refuse times that do not increase, or of which float64 cannot tell the spacings."""
+    _refuse_infinite("times", t)
+    stuck = np.flatnonzero(t[1:] <= t[:-1])
+    if stuck.size:
+        i = int(stuck[0]) + 1
+        raise ValueError(
+            f"times[{i}] = {float(t[i])!r} does not exceed times[{i - 1}] = {float(t[i - 1])!r}: "
+            "times must strictly increase"
+        )
+    if not np.isfinite(knots[-1]):
+        raise ValueError(f"times span {float(t[0])!r} to {float(t[-1])!r}: too long for float64")
+    i = int(np.flatnonzero(knots[1:] <= knots[:-1])[0]) + 1
+    raise ValueError(
+        f"times[{i}] = {float(t[i])!r} is too close to times[{i - 1}] = {float(t[i - 1])!r}, "
+        f"{float(knots[i])!r} after times[0]: float64 does not tell them apart"
+    )
 
 
 def _refuse_antipodes(keyframes: Keyframes) -> None:
