@@ -53,7 +53,7 @@ def test_every_target_has_a_verdict():
     missing = judged(table())["one sample of `quartic`"]
     assert missing.value is None
     assert not missing.met
-    assert str(missing).startswith("not measured: speed: 0 rows match")
+    assert str(missing).startswith("not measured: no row ")
 
 
 def test_a_row_without_a_number_gives_its_reason():
@@ -107,7 +107,7 @@ MACHINE = {"model": "A 1", "cores": 2, "usable": 2}
         ),
         (
             {"cpu": MACHINE, "end": None, "sizes": {"speed": "quick"}},
-            "Measured on A 1, 2 cores. At quick size: fewer samples and shorter rounds than the targets ask for.",
+            "Measured on A 1, 2 cores. At quick size: fewer tasks and shorter rounds than the targets ask for.",
         ),
     ],
 )

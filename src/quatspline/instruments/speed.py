@@ -145,7 +145,7 @@ def tasks(rng: np.random.Generator, quick: bool) -> list[Task]:
     """The tasks of the speed table; quick leaves out those that take longest."""
     keyframes = walk(rng, 1000, DEGREES)[:, 0]
     patience = PATIENCE["quick" if quick else "full"]
-    even = np.linspace(0.0, 999.0, 100_000 if quick else 1_000_000)
+    even = np.linspace(0.0, 999.0, 1_000_000)
     chosen = [
         _evaluation("evaluate", keyframes, even, patience),
         _setup("set-up", keyframes),

@@ -60,7 +60,12 @@ class Verdict:
 
 
 def _number(column: str, cell: Ledger, task: str, scheme: str) -> float:
-    value = float(cell("speed", column, task=task, scheme=scheme).value)
+    try:
+        value = float(cell("speed", column, task=task, scheme=scheme).value)
+    except KeyError:  # the table has no such column
+        raise
+    except LookupError:
+        raise LookupError(f"no row {task!r} of {scheme}; full size has one") from None
     if math.isfinite(value):
         return value
     why = cell("speed", "failure", task=task, scheme=scheme).value
@@ -192,5 +197,5 @@ def measured_on(run: Mapping[str, Any]) -> str:
     parts = [machine, *(f"{shown} {known[key]}" for key, shown in SOFTWARE.items() if key in known)]
     parts += [run["end"][:10]] if run.get("end") else []
     quick = run.get("sizes", {}).get("speed") == "quick"
-    short = " At quick size: fewer samples and shorter rounds than the targets ask for."
+    short = " At quick size: fewer tasks and shorter rounds than the targets ask for."
     return f"Measured on {', '.join(parts)}.{short if quick else ''}"
