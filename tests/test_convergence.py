@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from scipy.interpolate import BSpline
 
-from quatspline.curve import Curve, SolveReport
+from quatspline.curve import Curve
 from quatspline.instruments import convergence
 from quatspline.instruments.continuity import jumps
 from quatspline.registry import load, scheme, shipped
 from quatspline.running import Run
+from quatspline.solving import SolveReport
 from quatspline.trajectories.walks import walk
 
 UNEVEN = np.array([0.0, 1.0, 1.3, 3.3, 4.0, 4.2, 6.0])

@@ -9,9 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from quatspline import quaternion
-from quatspline.curve import ConvergenceError, Curve, SolveReport
+from quatspline.curve import Curve
 from quatspline.keyframes import Keyframes, prepare
 from quatspline.options import Above, AtLeast, Count, checked, nearest, per_keyframe
+from quatspline.solving import ConvergenceError, SolveReport
 from walks import random_units, uneven, walk
 
 Q = walk(5, 60.0)

@@ -11,17 +11,18 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from quatspline.comparing import compare
-    from quatspline.curve import ConvergenceError, Curve, SolveReport
+    from quatspline.curve import Curve
     from quatspline.keyframes import Keyframes
     from quatspline.registry import build, scheme, schemes
     from quatspline.schemes.quartic import QuarticSpline
+    from quatspline.solving import ConvergenceError, SolveReport
 
 __version__ = "0.1.0"
 
 _HOMES = {
     "Curve": "quatspline.curve",
-    "SolveReport": "quatspline.curve",
-    "ConvergenceError": "quatspline.curve",
+    "SolveReport": "quatspline.solving",
+    "ConvergenceError": "quatspline.solving",
     "Keyframes": "quatspline.keyframes",
     "QuarticSpline": "quatspline.schemes.quartic",
     "build": "quatspline.registry",

@@ -71,7 +71,7 @@ def _told(line: str, status: int) -> int:
 
 
 def _unforeseen(error: Exception) -> int:
-    from quatspline.curve import ConvergenceError
+    from quatspline.solving import ConvergenceError
 
     if not isinstance(error, ConvergenceError):
         traceback.print_exception(error)

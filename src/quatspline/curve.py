@@ -1,11 +1,10 @@
-"""Curve: the one interface of all schemes, with its claims; SolveReport and ConvergenceError."""
+"""Curve: the one interface of all schemes, with its claims."""
 
 from __future__ import annotations
 
 import abc
 import operator
 import sys
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
@@ -15,8 +14,9 @@ from numpy.typing import ArrayLike
 
 import quatspline.schemes
 from quatspline import keyframes as kf
-from quatspline import numeric, options, quaternion
+from quatspline import numeric, options, quaternion, solving
 from quatspline.quaternion import FloatArray
+from quatspline.solving import SolveReport
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
@@ -28,64 +28,6 @@ if not callable(quatspline.schemes):
 
 EDGE = 4
 """Samples this many ulp outside an open domain count as its end."""
-
-WRONG_FIXED_POINT = 1000.0
-"""A stop by change with a residual over this many tolerances is not a solution."""
-
-
-@dataclass(frozen=True)
-class SolveReport:
-    """What an iterative solver did; fields have the shape of the tracks where there are several.
-
-    Attributes
-    ----------
-    method, stop : the iteration, and the rule that ended it ("residual" or "change")
-    iterations : updates made, the accepting one included
-    change : relative change of all control quaternions by the last update
-    residual : largest miss at a keyframe, a rotation angle in rad
-    converged : whether the stop rule was met at a right solution
-    tolerance : what was asked for
-
-    Examples
-    --------
-    >>> import quatspline as qs
-    >>> keyframes = [[1, 0, 0, 0], [0.8, 0.6, 0, 0], [0, 0.6, 0.8, 0], [0, 0, 1, 0]]
-    >>> report = qs.build("nielson", None, keyframes, tolerance=1e-9).solve_report
-    >>> report.method, report.converged, report.residual <= report.tolerance
-    ('jacobi', True, True)
-    >>> qs.build("quartic", None, keyframes).solve_report is None
-    True
-    """
-
-    method: str
-    stop: str
-    iterations: Any
-    change: Any
-    residual: Any
-    converged: Any
-    tolerance: float
-
-
-class ConvergenceError(RuntimeError):
-    """A solve that did not converge; ``report`` is its `SolveReport`.
-
-    Examples
-    --------
-    >>> import quatspline as qs
-    >>> keyframes = [[1, 0, 0, 0], [0.8, 0.6, 0, 0], [0, 0.6, 0.8, 0], [0, 0, 1, 0]]
-    >>> try:
-    ...     qs.build("nielson", None, keyframes, max_iterations=2)
-    ... except qs.ConvergenceError as error:
-    ...     error.report.iterations
-    2
-    """
-
-    def __init__(self, message: str, report: SolveReport) -> None:
-        super().__init__(message)
-        self.report = report
-
-    def __reduce__(self) -> Any:
-        return type(self), (self.args[0], self.report)
 
 
 class Curve(abc.ABC):
@@ -373,7 +315,7 @@ class Curve(abc.ABC):
                 type(self).from_keyframes(keyframes.track(k), **self._options | excused)
                 for k in range(keyframes.tracks.shape[0])
             )
-            report = _joined([p.solve_report for p in self._parts], keyframes.track_shape)
+            report = solving.joined([p.solve_report for p in self._parts], keyframes.track_shape)
             if report is not None:
                 self._conclude(report, self._options.get("on_failure", "raise"))
 
@@ -433,17 +375,8 @@ class Curve(abc.ABC):
     def _conclude(self, report: SolveReport, on_failure: str = "raise") -> None:
         """Keep the report of a solve; raise ConvergenceError where it failed and was not excused."""
         self.solve_report = report
-        if on_failure == "raise" and not np.all(report.converged):
-            k = int(np.argmin(np.reshape(report.converged, -1)))
-            track = f" on track {k}" if self._keyframes.track_shape else ""
-            picked = [
-                np.reshape(x, -1)[k] for x in (report.iterations, report.change, report.residual)
-            ]
-            raise ConvergenceError(
-                f"{self.name} ({report.method}) did not converge{track}: after {picked[0]} iterations "
-                f"change {picked[1]:.3g}, residual {picked[2]:.3g} rad, tolerance {report.tolerance:g}",
-                report,
-            )
+        if on_failure == "raise":
+            solving.require_converged(self.name, report, tracks=bool(self._keyframes.track_shape))
 
 
 def _rebuild(name: str, keyframes: kf.Keyframes, given: dict[str, Any]) -> Curve:
@@ -483,16 +416,3 @@ def _checked_threads(threads: Any) -> int:
     if count < 1:
         raise ValueError(f"threads={count}: expected at least 1")
     return count
-
-
-def _joined(reports: list[SolveReport | None], shape: tuple[int, ...]) -> SolveReport | None:
-    """One report whose fields have the shape of the tracks."""
-    if not reports or any(r is None for r in reports):
-        return None
-    first = reports[0]
-    assert first is not None
-    columns = {
-        field: np.array([getattr(r, field) for r in reports]).reshape(shape)
-        for field in ("iterations", "change", "residual", "converged")
-    }
-    return SolveReport(first.method, first.stop, tolerance=first.tolerance, **columns)

@@ -17,10 +17,11 @@ from typing import Any
 import numpy as np
 
 from quatspline._jit import CHANGE, ITERATIONS, RESIDUAL, Kernel
-from quatspline.curve import WRONG_FIXED_POINT, Curve, SolveReport
+from quatspline.curve import Curve
 from quatspline.families.driver import described, fit_tracks, sample
 from quatspline.primitives import NEAR
 from quatspline.quaternion import BoolArray, FloatArray
+from quatspline.solving import WRONG_FIXED_POINT, SolveReport
 
 CHUNK = 4096
 """Segments fitted at once where a call asks for a window of a long curve ..."""

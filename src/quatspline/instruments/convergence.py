@@ -18,9 +18,10 @@ from typing import Any, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from quatspline.curve import Curve, SolveReport
+from quatspline.curve import Curve
 from quatspline.options import declared
 from quatspline.quaternion import FloatArray
+from quatspline.solving import SolveReport
 
 FAILURES = ("limit", "wrong", "gave_up", "not_finite")
 """Kinds of failure: the iterations ran out; it rests where the curve misses keyframes; the solver gave
