@@ -63,9 +63,8 @@ def measure_cell(run: Run, knots: str, scheme: str) -> list[Row]:
 
 
 def _measured(run: Run, kind: str, name: str, count: int) -> list[Row]:
-    limit = scheme_class(name).practical_keyframes
-    if limit is not None and count > limit:
-        return [{"failure": f"over budget beyond {limit} keyframes"}]
+    if failure := scheme_class(name).impractical(count):
+        return [{"failure": failure}]
     times: FloatArray = knots(run.rng("accuracy", kind, count), kind, count)
     curve = builder(name)(times, tumble(times))
     return [{**errors(curve), **facts(curve)}]

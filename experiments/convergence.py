@@ -90,11 +90,8 @@ def measure_cell(
     cls = registry.scheme(scheme)
     row: dict[str, Any] = {"scheme": scheme, "method": method, "keyframes": keyframes}
     row |= {"step_degrees": step_degrees, "unevenness": unevenness, "failure": None}
-    if cls.practical_keyframes is not None and keyframes > cls.practical_keyframes:
-        return row | {
-            "sets": 0,
-            "failure": f"over budget beyond {cls.practical_keyframes} keyframes",
-        }
+    if failure := cls.impractical(keyframes):
+        return row | {"sets": 0, "failure": failure}
     rng = run.rng("convergence", step_degrees, unevenness, keyframes)
     sets = _sets(run, keyframes)
     q = walk(rng, keyframes, float(step_degrees), sets)

@@ -197,9 +197,9 @@ def _above_rounding(curve: Curve, fair: Row) -> Row:
 
 def _afford_set_up(name: str, keyframes: Keyframes) -> None:
     """Refuse a scheme whose set-up would take longer than the budget: it may grow with the square."""
-    limit, count = scheme(name).practical_keyframes, keyframes.count
-    if limit is not None and count > limit:
-        raise ValueError(f"over budget beyond {limit} keyframes; ask for it by name")
+    count = keyframes.count
+    if failure := scheme(name).impractical(count):
+        raise ValueError(f"{failure}; ask for it by name")
     if count > MANY:
         start = time.perf_counter()
         _built(name, kf.prepare(keyframes.times[:MANY], keyframes.quaternions[:MANY]))

@@ -132,6 +132,12 @@ class Curve(abc.ABC):
         curve._build(keyframes, given)
         return curve
 
+    @classmethod
+    def impractical(cls, count: int) -> str | None:
+        """Why experiments leave out so many keyframes; None where they do not."""
+        limit = cls.practical_keyframes
+        return f"over budget beyond {limit} keyframes" if limit and count > limit else None
+
     # -- what a scheme writes -------------------------------------------------------------------
 
     @abc.abstractmethod

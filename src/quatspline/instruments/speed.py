@@ -176,9 +176,8 @@ def _options(name: str) -> dict[str, Any]:
 def _practical(name: str, count: int) -> type[Curve]:
     """The scheme, unless it says that so many keyframes are too many for it."""
     cls = scheme(name)
-    limit = cls.practical_keyframes
-    if limit is not None and count > limit:
-        raise OverBudget(f"over budget beyond {limit} keyframes")
+    if failure := cls.impractical(count):
+        raise OverBudget(failure)
     return cls
 
 
