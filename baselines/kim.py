@@ -40,6 +40,7 @@ from quatspline.families.bspline import (
 from quatspline.families.bspline_newton import copy, descend, moved, newton, settle
 from quatspline.families.cumulative import CUMULATIVE
 from quatspline.families.segments import SegmentCurve
+from quatspline.inputs import real_array, refuse_infinite
 from quatspline.keyframes import Keyframes
 from quatspline.options import Count, OnFailure, Positive, Stop
 from quatspline.primitives import between, mul
@@ -232,13 +233,11 @@ def _velocities(name: str, given: Any, ends: str, keyframes: Keyframes) -> Float
     """End velocities (3,) or (*K, 3) as rows, refused where they are not finite numbers."""
     if ends != "clamped":
         raise ValueError(f"{name}: only with ends='clamped', not ends={ends!r}")
-    array = np.asarray(given)
+    array = real_array(name, given)
     shapes = sorted({(3,), (*keyframes.track_shape, 3)}, key=len)
-    if array.dtype.kind not in "iuf" or array.shape not in shapes:
+    if array.shape not in shapes:
         expected = " or ".join(map(str, shapes))
-        raise ValueError(f"{name} has shape {array.shape}, {array.dtype}: expected {expected}")
-    if not np.isfinite(array).all():
-        where = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
-        raise ValueError(f"{name}{list(where)} = {array[where]}: not a finite number")
+        raise ValueError(f"{name} has shape {array.shape}: expected {expected}")
+    refuse_infinite(name, array)
     rows: FloatArray = array.astype(float).reshape(-1, 3)
     return rows

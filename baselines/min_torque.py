@@ -62,11 +62,7 @@ class MinimumTorqueSpline(SegmentCurve):
         inner = keyframes.knots[:-1, None] + np.arange(m) * h[::m, None]
         knots = np.append(inner, keyframes.knots[-1])
         start = LocalQuinticSpline.from_keyframes(keyframes)
-        t = np.minimum(keyframes.times[0] + knots, keyframes.times[-1])
-        nodes, v, a = (
-            np.moveaxis(start(t, order).reshape(t.size, len(tracks), -1), 1, 0).copy()
-            for order in (0, 1, 2)
-        )
+        nodes, v, a = (np.moveaxis(start.inner(knots, k), 1, 0).copy() for k in (0, 1, 2))
         nodes[:, ::m] = tracks
         rates = np.concatenate([v, a], axis=-1) / 2
         segments = np.empty((len(tracks), h.size, self.family.constants))

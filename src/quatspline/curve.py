@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 import quatspline.schemes
 from quatspline import keyframes as kf
-from quatspline import numeric, options, quaternion, solving
-from quatspline.quaternion import FloatArray
+from quatspline import numeric, options, quaternion, solving, stamps
+from quatspline.inputs import FloatArray, at, real_array
 from quatspline.solving import SolveReport
 
 if TYPE_CHECKING:
@@ -40,11 +40,15 @@ class Curve(abc.ABC):
     Parameters
     ----------
     times : (n,) strictly increasing, closed (n + 1,): the last is where the first keyframe returns;
-        None means 0, 1, 2, ...
-    quaternions : (n, 4) scalar first, (n, *K, 4) for several tracks, or a scipy ``Rotation``
+        numbers, integer stamps (subtracted as integers), datetimes or timedeltas (which count in
+        seconds); None means 0, 1, 2, ...
+    quaternions : (n, 4) scalar first, (n, *K, 4) for several tracks; a scipy ``Rotation``, a list of
+        them, numpy-quaternion's arrays, columns of pandas
     closed : whether the curve returns to its first keyframe
     align : put neighbours on one hemisphere (the short way round); False keeps the signs as given
     closing_sign : with closed and align=False, -1 closes an odd number of full turns
+    normalise : take quaternions of any length, such as rounded ones; False refuses those whose norm
+        is off 1 by more than 1e-3
     **options : the scheme's own
 
     Raises
@@ -108,11 +112,12 @@ class Curve(abc.ABC):
     def __init__(
         self,
         times: ArrayLike | None,
-        quaternions: ArrayLike | Rotation,
+        quaternions: Any,
         *,
         closed: bool = False,
         align: bool = True,
         closing_sign: int | None = None,
+        normalise: bool = False,
         **given: Any,
     ) -> None:
         keyframes = kf.prepare(
@@ -121,6 +126,7 @@ class Curve(abc.ABC):
             closed=closed,
             align=align,
             closing_sign=closing_sign,
+            normalise=normalise,
             min_keyframes=self.min_keyframes,
         )
         self._build(keyframes, given)
@@ -159,8 +165,9 @@ class Curve(abc.ABC):
     # -- what a user reads ----------------------------------------------------------------------
 
     @property
-    def times(self) -> FloatArray:
-        """Keyframe times as given: (n,) or, closed, (n + 1,)."""
+    def times(self) -> NDArray[Any]:
+        """Keyframe times as given, (n,) or, closed, (n + 1,): float64, but int64 for integers that
+        float64 does not hold, and datetimes and timedeltas as they are."""
         return self._keyframes.times
 
     @cached_property
@@ -174,9 +181,10 @@ class Curve(abc.ABC):
         return self._keyframes.closed
 
     @property
-    def domain(self) -> tuple[float, float]:
-        """First and last time."""
-        return float(self.times[0]), float(self.times[-1])
+    def domain(self) -> tuple[Any, Any]:
+        """First and last time: numbers, or datetimes where keyframes have them."""
+        first, last = self.times[0], self.times[-1]
+        return (first, last) if self.times.dtype.kind in "mM" else (first.item(), last.item())
 
     @property
     def keyframes(self) -> kf.Keyframes:
@@ -228,7 +236,7 @@ class Curve(abc.ABC):
         >>> spin([[0.1, 0.2, 0.3]]).shape
         (1, 3, 4)
         """
-        samples = _samples(t)
+        samples, slack = self._taken(t)
         if type(order) is not int or order not in self.orders:
             order = self._checked_order(order)
         if frame not in ("body", "world"):
@@ -236,20 +244,22 @@ class Curve(abc.ABC):
         if threads != 1:
             threads = _checked_threads(threads)
         shape = samples.shape + self._widths[order]
-        if out is None:
-            result = np.empty(shape)
-            self._evaluate(samples, order, result.ravel(), threads)
-        elif _checked_out(out, shape).flags.c_contiguous and not np.may_share_memory(samples, out):
-            result = out
-            self._evaluate(samples, order, result.ravel(), threads)
-        else:
-            result = out
-            result[...] = self(
-                samples, order, threads=threads
-            )  # strided, or the samples' own memory
+        if out is not None:
+            _check_out(out, shape)
+        direct = out is not None and out.flags.carray and not np.may_share_memory(samples, out)
+        result: FloatArray = out if direct and out is not None else np.empty(shape)
+        flat, origin = samples.reshape(-1), self._origin
+        bad = self._evaluate(flat, origin, slack, order, result.reshape(-1), threads)
+        if bad >= 0:
+            self._refuse(t, bad)
         if order and frame == "world":
-            result[...] = quaternion.rotate(self(t, threads=threads), result)
-        return result
+            turn = np.empty(samples.shape + self._widths[0])
+            self._evaluate(flat, origin, slack, 0, turn.reshape(-1), threads)
+            result[...] = quaternion.rotate(turn, result)
+        if out is None or direct:
+            return result
+        out[...] = result  # strided, or the samples' own memory
+        return out
 
     def log(self, t: ArrayLike) -> FloatArray:
         """The log-curve ln q(t), S + (*K, 3): the principal logarithm of the curve's own sign.
@@ -266,7 +276,8 @@ class Curve(abc.ABC):
         """
         from quatspline.logcurve import log_curve
 
-        return log_curve(self, t)
+        samples, _ = self._taken(t)
+        return log_curve(self.inner, self._keyframes, samples - self._origin, self(t))
 
     def rotation(self, t: ArrayLike) -> Rotation:
         """The orientations at t as a scipy ``Rotation``.
@@ -283,10 +294,11 @@ class Curve(abc.ABC):
         return Rotation.from_quat(self(t), scalar_first=True)
 
     def __repr__(self) -> str:
-        n, (lo, hi) = self._keyframes.count, self.domain
+        n, ends = self._keyframes.count, self.domain
+        lo, hi = (f"{end:g}" if isinstance(end, float) else str(end) for end in ends)
         kind = "closed" if self.closed else "open"
         tracks = f", tracks {self._keyframes.track_shape}" if self._keyframes.track_shape else ""
-        return f"<{type(self).__name__} {self.name!r}: {n} keyframes, {kind}, [{lo:g}, {hi:g}]{tracks}>"
+        return f"<{type(self).__name__} {self.name!r}: {n} keyframes, {kind}, [{lo}, {hi}]{tracks}>"
 
     def __reduce__(self) -> Any:
         # Schemes loaded by path have no importable module: send the name (design, trap 12).
@@ -309,6 +321,7 @@ class Curve(abc.ABC):
             )
         self._options = options.checked(self.name, type(self)._fit, given)
         self._keyframes = keyframes
+        self._origin = float(keyframes.times[0]) if keyframes.plain else 0.0
         self._widths = tuple((*keyframes.track_shape, width) for width in (4, 3, 3))
         if self.batched or keyframes.tracks.shape[0] == 1:
             # No part is the curve itself: a cycle would keep its memory until garbage collection.
@@ -325,44 +338,94 @@ class Curve(abc.ABC):
             if report is not None:
                 self._conclude(report, self._options.get("on_failure", "raise"))
 
-    def _evaluate(self, samples: FloatArray, order: int, out: FloatArray, threads: int) -> None:
-        """Fill out (m * K * (4 or 3),), sample by sample, at the samples S of size m."""
-        t, flips = self._wrapped(samples)
+    def _evaluate(
+        self,
+        t: FloatArray,
+        origin: float,
+        slack: float,
+        order: int,
+        out: FloatArray,
+        threads: int,
+    ) -> int:
+        """Fill out (m * K * (4 or 3),), sample by sample, at t (m,), where the curve begins at origin.
+
+        Returns the index of the first time that is not finite or outside an open domain by more than
+        the slack, -1 if there is none.
+        """
+        inner, flips, bad = self._wrapped(t - origin, slack)
+        if bad.any():
+            return int(np.argmax(bad))
         out = out.reshape(t.size, self._keyframes.tracks.shape[0], 3 if order else 4)
         for k, part in enumerate(self._parts or (self,)):
             evaluate = (part._orientation, part._velocity, part._acceleration)[order]
-            out[:, k] = evaluate(t)
+            out[:, k] = evaluate(inner)
             if order == 0 and self._keyframes.signs[k] < 0.0:
                 out[flips, k] *= -1.0
+        return -1
 
-    def _wrapped(self, samples: FloatArray) -> tuple[FloatArray, Any]:
-        """Times since the first keyframe within the domain (m,), and where an odd number of
-        periods was taken off."""
-        first, last = self.domain
-        period = last - first
-        t = samples.reshape(-1) - first
+    def since(self, t: Any) -> FloatArray:
+        """Times since the first keyframe (m,), within the domain, of samples of any kind and shape."""
+        samples, slack = self._taken(t)
+        inner, _, bad = self._wrapped(samples.reshape(-1) - self._origin, slack)
+        if bad.any():
+            self._refuse(t, int(np.argmax(bad)))
+        return inner
+
+    def inner(self, t: FloatArray, order: int = 0) -> FloatArray:
+        """Values (m, K, 4 or 3) at times since the first keyframe (m,), unchecked: nothing is rounded
+        by adding a clock's time and taking it off again."""
+        out = np.empty((t.size, self._keyframes.tracks.shape[0], 3 if order else 4))
+        self._evaluate(np.array(t, dtype=float), 0.0, np.inf, order, out.reshape(-1), 1)
+        return out
+
+    def _wrapped(self, t: FloatArray, slack: float) -> tuple[FloatArray, Any, Any]:
+        """Times since the first keyframe within the domain (m,), where an odd number of periods was
+        taken off, and which are bad."""
+        period = float(self._keyframes.knots[-1])
         if self.closed:
             bad = ~np.isfinite(t)
             periods = np.floor(np.where(bad, 0.0, t) / period)
-            t = np.clip(t - periods * period, 0.0, period)
-            flips = periods % 2 == 1
+            return np.clip(t - periods * period, 0.0, period), periods % 2 == 1, bad
+        bad = ~((t >= -slack) & (t <= period + slack))
+        return np.clip(t, 0.0, period), np.zeros(t.shape, bool), bad
+
+    def _taken(self, t: Any) -> tuple[FloatArray, float]:
+        """Samples as float64 (C-contiguous, of any shape), and how far outside the domain they may lie.
+
+        They count from `_origin`: as given, or, of keyframes with other stamps than float64, since the
+        first keyframe.
+        """
+        if type(t) is float and self._keyframes.plain:
+            return np.array(t), self._slack
+        given = real_array("t", t) if self._keyframes.plain else stamps.stamps("t", t)
+        if self._keyframes.plain:
+            samples = given.astype(np.float64, copy=False)
         else:
-            bad = ~((t >= -self._slack) & (t <= period + self._slack))
-            t = np.clip(t, 0.0, period)
-            flips = np.zeros(t.shape, bool)
-        if bad.any():
-            self._refuse(samples, int(np.argmax(bad)))
-        return t, flips
+            samples = stamps.elapsed(given, self._keyframes.times[0])
+        kind = np.asarray(t).dtype
+        fine = kind.kind != "f" or kind.itemsize >= 8
+        slack = self._slack if fine and self._keyframes.plain else self._slack_of(kind)
+        return (samples if samples.flags.carray else samples.copy()), slack
 
     @cached_property
     def _slack(self) -> float:
-        return EDGE * float(np.spacing(np.abs(self._keyframes.times[[0, -1]]).max()))
+        return self._slack_of(np.dtype(np.float64))
 
-    def _refuse(self, samples: FloatArray, index: int) -> None:
-        where = [int(i) for i in np.unravel_index(index, samples.shape)]
-        label = f"t{where}" if where else "t"
-        value = float(samples.reshape(-1)[index])
-        if not np.isfinite(value):
+    def _slack_of(self, kind: np.dtype[Any]) -> float:
+        """EDGE ulp of an end, in samples of a dtype."""
+        first, last = self._keyframes.times[0], self._keyframes.times[-1]
+        return EDGE * stamps.resolution(first, last, kind)
+
+    def _refuse(self, t: Any, index: int) -> None:
+        given = np.asarray(t)
+        where = np.unravel_index(index, given.shape) if given.shape else ()
+        label, stamp = at("t", where), given[where]
+        if given.dtype.kind in "mM":
+            raise ValueError(
+                f"{label} = {stamp}: outside the domain {' to '.join(map(str, self.domain))}"
+            )
+        value = stamp.item()
+        if not np.isfinite(float(value)):
             raise ValueError(f"{label} = {value}: not a finite number")
         first, last = self.domain
         raise ValueError(f"{label} = {value!r}: outside the domain [{first!r}, {last!r}]")
@@ -391,27 +454,18 @@ def _rebuild(name: str, keyframes: kf.Keyframes, given: dict[str, Any]) -> Curve
     return scheme(name).from_keyframes(keyframes, **given)
 
 
-def _samples(t: ArrayLike) -> FloatArray:
-    """The times as a C-contiguous, writeable float64 array of any shape."""
-    if type(t) is float:
-        return np.array(t)
-    try:
-        samples = np.asarray(t)
-    except ValueError:
-        raise ValueError("t: rows of unequal length, or not numbers") from None
-    if samples.dtype.kind not in "iuf":
-        raise ValueError(f"t: expected real numbers, got dtype {samples.dtype}")
-    samples = samples.astype(float, copy=False)
-    return samples if samples.flags.carray else samples.copy()
-
-
-def _checked_out(out: Any, shape: tuple[int, ...]) -> FloatArray:
-    if not isinstance(out, np.ndarray) or out.dtype != np.float64 or out.shape != shape:
-        found = f"{out.dtype} {out.shape}" if isinstance(out, np.ndarray) else type(out).__name__
+def _check_out(out: Any, shape: tuple[int, ...]) -> None:
+    """Refuse what cannot be filled as it is: subclasses of ndarray index in ways of their own."""
+    if type(out) is not np.ndarray or out.dtype != np.float64 or out.shape != shape:
+        kind = type(out)
+        found = (
+            f"{out.dtype} {out.shape}"
+            if kind is np.ndarray
+            else f"{kind.__module__}.{kind.__name__}"
+        )
         raise ValueError(f"out: expected a float64 array of shape {shape}, got {found}")
     if not out.flags.writeable:
         raise ValueError("out: the array is read-only")
-    return out
 
 
 def _checked_threads(threads: Any) -> int:

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from quatspline import quaternion
+from quatspline.keyframes import Keyframes
 from quatspline.quaternion import FloatArray
-
-if TYPE_CHECKING:
-    from quatspline.curve import Curve
 
 ONE_AXIS = 1e-12
 """Vector parts that leave one line by less than this make a spin about one axis."""
@@ -20,18 +17,32 @@ STEPS = np.arange(16) / 16
 """Shares of a segment at which the angle is followed: less than half a turn of S^3 between two."""
 
 
-def log_curve(curve: Curve, t: ArrayLike) -> FloatArray:
-    """ln q(t), shape S + (*K, 3); see `Curve.log`."""
-    q = curve(t)
+def log_curve(
+    evaluate: Callable[[FloatArray], FloatArray], keyframes: Keyframes, t: FloatArray, q: FloatArray
+) -> FloatArray:
+    """ln q(t), shape S + (*K, 3); see `Curve.log`.
+
+    Parameters
+    ----------
+    evaluate : orientations (m, K, 4) at times since the first keyframe (m,)
+    keyframes : of the curve
+    t, q : times since the first keyframe, S, and the orientations there, S + (*K, 4)
+    """
     principal = quaternion.log(q)
-    samples = np.asarray(t, dtype=float)
-    keyframes = curve.keyframes
-    tracks = q.reshape(*samples.shape, -1, 4)
-    result = principal.reshape(*samples.shape, -1, 3)
-    for k in range(keyframes.tracks.shape[0]):
-        axis = _common_axis(keyframes.tracks[k])
+    tracks = q.reshape(*t.shape, -1, 4)
+    result = principal.reshape(*t.shape, -1, 3)
+    axes = [_common_axis(track) for track in keyframes.tracks]
+    if any(axis is not None for axis in axes):
+        grid = np.append(
+            keyframes.knots[:-1, None] + keyframes.spacings[:, None] * STEPS, keyframes.knots[-1]
+        )
+        along = evaluate(grid)
+    for k, axis in enumerate(axes):
         if axis is not None:
-            angle = _lifted(curve, k, axis, samples, tracks[..., k, :])
+            turning = np.unwrap(_angle(along[:, k], axis))
+            rough = _followed(t, grid, turning, keyframes.closed)
+            angle = _angle(tracks[..., k, :], axis)
+            angle = angle + 2.0 * np.pi * np.rint((rough - angle) / (2.0 * np.pi))
             result[..., k, :] = angle[..., None] * axis
     return result.reshape(principal.shape)
 
@@ -51,18 +62,11 @@ def _common_axis(q: FloatArray) -> FloatArray | None:
     return axis if first > 0 else -axis
 
 
-def _lifted(curve: Curve, k: int, axis: FloatArray, t: FloatArray, q: FloatArray) -> FloatArray:
-    """The continuous angle about the axis: the branch on which the curve arrives from its start."""
-    knots = curve.keyframes.knots
-    grid = np.append(knots[:-1, None] + np.diff(knots)[:, None] * STEPS, knots[-1])
-    along = curve(np.clip(curve.domain[0] + grid, *curve.domain)).reshape(grid.size, -1, 4)[:, k]
-    turning = np.unwrap(_angle(along, axis))
-    since = t - curve.domain[0]
-    periods = np.floor(since / knots[-1]) if curve.closed else np.zeros_like(since)
-    rough = np.interp(since - periods * knots[-1], grid, turning)
-    rough = rough + periods * (turning[-1] - turning[0])
-    angle = _angle(q, axis)
-    return angle + 2.0 * np.pi * np.rint((rough - angle) / (2.0 * np.pi))
+def _followed(t: FloatArray, grid: FloatArray, turning: FloatArray, closed: bool) -> FloatArray:
+    """The angle at t, roughly, on the branch on which the curve arrives from its start."""
+    periods = np.floor(t / grid[-1]) if closed else np.zeros_like(t)
+    rough = np.interp(t - periods * grid[-1], grid, turning)
+    return np.asarray(rough + periods * (turning[-1] - turning[0]))
 
 
 def _angle(q: FloatArray, axis: FloatArray) -> FloatArray:

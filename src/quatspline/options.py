@@ -15,7 +15,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_typ
 import numpy as np
 from numpy.typing import ArrayLike
 
-from quatspline.quaternion import FloatArray
+from quatspline.inputs import FloatArray, real_array, refuse_infinite
 
 
 @dataclass(frozen=True)
@@ -124,17 +124,10 @@ def _is_number(value: Any) -> bool:
 
 
 def per_keyframe(name: str, value: ArrayLike, count: int) -> FloatArray:
-    """A scalar for every keyframe, or one number a keyframe -> (count,) float64."""
-    try:
-        array = np.asarray(value)
-    except ValueError:
-        raise ValueError(f"{name}: rows of unequal length") from None
-    if array.dtype.kind not in "iuf":
-        raise ValueError(f"{name}: expected real numbers, got dtype {array.dtype}")
+    """A scalar for every keyframe, or one number per keyframe -> (count,) float64."""
+    array = real_array(name, value)
     if array.shape not in ((), (count,)):
         raise ValueError(f"{name} has shape {array.shape}: expected a number or {count} of them")
     array = np.array(np.broadcast_to(array, (count,)), dtype=float)
-    if not np.isfinite(array).all():
-        i = int(np.flatnonzero(~np.isfinite(array))[0])
-        raise ValueError(f"{name}[{i}] = {array[i]}: not a finite number")
+    refuse_infinite(name, array)
     return array

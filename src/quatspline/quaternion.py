@@ -17,13 +17,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from quatspline import primitives as p
 from quatspline._jit import compiled
+from quatspline.inputs import FloatArray
 
-FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-ANTIPODAL = 4 * np.finfo(float).eps
+ANTIPODAL = 4 * float(np.finfo(float).eps)
 """Quaternions whose sum is shorter than this have no shortest arc between them."""
+
+FLIP = -4 * float(np.finfo(float).eps)
+"""Neighbours with a dot product below this lie on opposite hemispheres.  Half a turn apart it is 0 but
+for rounding, which must not decide: there the sign stays as given, from whatever frame one looks."""
 
 
 def mul(a: ArrayLike, b: ArrayLike) -> FloatArray:
@@ -88,11 +92,11 @@ def normalise(q: ArrayLike) -> FloatArray:
 def align(q: ArrayLike) -> FloatArray:
     """Signs flipped along axis 0 of (n, ..., 4) so that neighbours share a hemisphere.
 
-    The first keeps its sign; orthogonal neighbours (dot product 0) stay as given.
+    The first keeps its sign; orthogonal neighbours (dot product 0 to rounding) stay as given.
     """
     q = np.asarray(q, dtype=float)
     dots = np.einsum("n...i,n...i->n...", q[1:], q[:-1])
-    signs = np.cumprod(np.where(dots < 0.0, -1.0, 1.0), axis=0)
+    signs = np.cumprod(np.where(dots < FLIP, -1.0, 1.0), axis=0)
     return np.concatenate([q[:1], q[1:] * signs[..., None]])
 
 

@@ -43,9 +43,9 @@ class PeerCurve(Curve):
         with quiet():
             super()._build(keyframes, given)
 
-    def _evaluate(self, samples: FloatArray, order: int, out: FloatArray, threads: int) -> None:
+    def _evaluate(self, *arguments: Any) -> int:
         with quiet():
-            super()._evaluate(samples, order, out, threads)
+            return super()._evaluate(*arguments)
 
 
 def with_return(keyframes: Keyframes) -> FloatArray:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -99,9 +100,9 @@ class SegmentCurve(Curve):
         )
         return reach
 
-    def _fit_window(self, t: FloatArray) -> None:
-        """Fit the chunks of segments that samples t (m,) lie in, where that was not done before."""
-        low, high = t.min() - self._first, t.max() - self._first
+    def _fit_window(self, low: float, high: float) -> None:
+        """Fit the chunks of segments from low to high, times since the first keyframe, where that was
+        not done before."""
         inside = low >= 0.0 and high < self.segment_knots[-1]
         if self._keyframes.closed and not inside:
             low, high = 0.0, self.segment_knots[-1]
@@ -145,7 +146,6 @@ class SegmentCurve(Curve):
         if segments.shape != shape:  # kernels read by address: a wrong shape would read elsewhere
             raise ValueError(f"segments has shape {segments.shape}: expected {shape}")
         self.described = described(self.segment_knots, segments, frames.signs, frames.closed)
-        self._first = float(frames.times[0])
         self.kernels = self.family.near if reach <= NEAR else self.family.far
 
     def _report(
@@ -166,33 +166,21 @@ class SegmentCurve(Curve):
         solved = SolveReport(method, stop, iterations, change, residual, converged, tolerance)
         self._conclude(solved, on_failure)
 
-    def _evaluate(self, samples: FloatArray, order: int, out: FloatArray, threads: int) -> None:
-        t = samples.ravel()
+    def _evaluate(
+        self,
+        t: FloatArray,
+        origin: float,
+        slack: float,
+        order: int,
+        out: FloatArray,
+        threads: int,
+    ) -> int:
         if self._waiting is not None and t.size:
-            self._fit_window(t)
+            self._fit_window(t.min() - origin, t.max() - origin)
+        kernel = self.kernels[order].address, order, self.described, origin, slack
         if threads == 1 or t.size < 2 * THREAD_MINIMUM:
-            bad = self._sample(t, order, out, self._first)
-        else:
-            bad = self._sample_in_threads(t, order, out, min(threads, t.size // THREAD_MINIMUM))
-        if bad >= 0:
-            self._refuse(samples, bad)
-
-    def _sample_in_threads(self, t: FloatArray, order: int, out: FloatArray, count: int) -> int:
-        edges = np.linspace(0, t.size, count + 1).astype(int)
-        width = out.size // t.size
-        with ThreadPoolExecutor(count) as pool:
-            runs = [
-                pool.submit(self._sample, t[a:b], order, out[width * a : width * b], self._first)
-                for a, b in pairwise(edges)
-            ]
-            found = [(run.result(), a) for run, a in zip(runs, edges, strict=False)]
-        return min((index + a for index, a in found if index >= 0), default=-1)
-
-    def _sample(self, t: FloatArray, order: int, out: FloatArray, origin: float) -> int:
-        index: int = sample(
-            self.kernels[order].address, order, self.described, origin, self._slack, t, out
-        )
-        return index
+            return int(sample(*kernel, t, out))
+        return _in_threads(kernel, t, out, min(threads, t.size // THREAD_MINIMUM))
 
     # The driver wraps and checks; these serve those who call them directly with inner times.
 
@@ -206,11 +194,17 @@ class SegmentCurve(Curve):
         return self._inner(t, 2)
 
     def _inner(self, t: FloatArray, order: int) -> FloatArray:
-        if self._waiting is not None and t.size:
-            self._fit_window(t + self._first)
-        tracks, width = self._keyframes.tracks.shape[0], 3 if order else 4
-        out = np.empty((t.size, tracks, width))
-        bad = self._sample(np.array(t, dtype=float), order, out.reshape(-1), 0.0)
-        if bad >= 0:
-            raise ValueError(f"t[{bad}] = {float(t[bad])!r}: outside the segments")
-        return out[:, 0]
+        return self.inner(t, order)[:, 0]
+
+
+def _in_threads(kernel: tuple[Any, ...], t: FloatArray, out: FloatArray, count: int) -> int:
+    """Run the driver on as many parts of the samples; the first bad index, or -1."""
+    edges = np.linspace(0, t.size, count + 1).astype(int).tolist()
+    width = out.size // t.size
+    with ThreadPoolExecutor(count) as pool:
+        runs = [
+            pool.submit(partial(sample, *kernel), t[a:b], out[width * a : width * b])
+            for a, b in pairwise(edges)
+        ]
+        found = [(run.result(), a) for run, a in zip(runs, edges, strict=False)]
+    return min((index + a for index, a in found if index >= 0), default=-1)

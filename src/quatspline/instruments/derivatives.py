@@ -27,8 +27,7 @@ def rates(curve: Curve, t: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Angular velocity and acceleration (m, 3) at once: half the work where they are numerical."""
     if 1 in curve.orders and 2 in curve.orders:
         return curve(t, 1), curve(t, 2)
-    since, _ = curve._wrapped(np.asarray(t, dtype=float))
-    return numeric.rates(curve._orientation, since, curve.keyframes.knots)
+    return numeric.rates(curve._orientation, curve.since(t), curve.keyframes.knots)
 
 
 def analytic(curve: Curve) -> bool:
@@ -48,8 +47,7 @@ def shape_rates(curve: Curve, t: FloatArray) -> tuple[FloatArray, FloatArray]:
     """
     if closed_forms(curve):
         return curve(t, 1), curve(t, 2)
-    since, _ = curve._wrapped(np.asarray(t, dtype=float))
-    return numeric.rates(curve._orientation, since, curve.keyframes.knots)
+    return numeric.rates(curve._orientation, curve.since(t), curve.keyframes.knots)
 
 
 def one_sided(

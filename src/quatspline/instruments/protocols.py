@@ -22,6 +22,9 @@ from quatspline.quaternion import FloatArray
 Protocol = Literal["per-frame", "solve-once"]
 PROTOCOLS: tuple[Protocol, ...] = ("per-frame", "solve-once")
 
+SLACK = np.inf
+"""Frames lie within the domain but for rounding: there is nothing to refuse."""
+
 
 def frames(
     scheme: type[Curve], keyframes: Keyframes, t: FloatArray, protocol: Protocol, **options: Any
@@ -54,8 +57,8 @@ def _compiled(
 
     def generate(repeats: int) -> FloatArray:
         # The curve is named here so that the arrays whose addresses are in `places` live on.
-        kernel, origin, slack = curve.kernels[0].address, k.times[0], curve._slack
-        loop(repeats, *fit, kernel, places, origin, slack, t, out.reshape(-1))
+        kernel, origin = curve.kernels[0].address, float(k.times[0])
+        loop(repeats, *fit, kernel, places, origin, SLACK, t, out.reshape(-1))
         return out[:, 0]
 
     return generate
@@ -68,16 +71,17 @@ def _interpreted(
     protocol: Protocol,
     options: dict[str, Any],
 ) -> Callable[[int], FloatArray]:
-    out = np.empty((t.size, 1, 4))
+    out, origin = np.empty((t.size, 1, 4)), float(keyframes.times[0])
 
     def generate(repeats: int) -> FloatArray:
         for _ in range(repeats):
             if protocol == "solve-once":
-                scheme.from_keyframes(keyframes, **options)._evaluate(t, 0, out.reshape(-1), 1)
+                curve = scheme.from_keyframes(keyframes, **options)
+                curve._evaluate(t, origin, SLACK, 0, out.reshape(-1), 1)
                 continue
             for i in range(t.size):
                 curve = scheme.from_keyframes(keyframes, **options)
-                curve._evaluate(t[i : i + 1], 0, out[i].reshape(-1), 1)
+                curve._evaluate(t[i : i + 1], origin, SLACK, 0, out[i].reshape(-1), 1)
         return out[:, 0]
 
     return generate
