@@ -5,7 +5,7 @@ from __future__ import annotations
 from quatspline._jit import REACH, fit_kernel
 from quatspline.families.arcs import SIZE as ARC
 from quatspline.families.arcs import set_arc
-from quatspline.families.nested import TRIANGLE, set_parameter
+from quatspline.families.nested import TRIANGLE, restored, set_parameter
 from quatspline.families.segments import SegmentCurve
 from quatspline.families.tangents import keyframe
 from quatspline.keyframes import Keyframes
@@ -52,11 +52,11 @@ def FIT(q, h, closed, sign, parameters, segments, report):
         if i > 0 or closed:
             a = keyframe(q, i - 1, sign)
         else:
-            a = slerp(c[0], c[1], c[2], c[3], b[0], b[1], b[2], b[3], 2.0)
+            a = restored(slerp(c[0], c[1], c[2], c[3], b[0], b[1], b[2], b[3], 2.0), c)
         if i < n - 1 or closed:
             d = keyframe(q, i + 2, sign)
         else:
-            d = slerp(b[0], b[1], b[2], b[3], c[0], c[1], c[2], c[3], 2.0)
+            d = restored(slerp(b[0], b[1], b[2], b[3], c[0], c[1], c[2], c[3], 2.0), b)
         r0 = set_arc(segments, i, 0, a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3])
         r1 = set_arc(segments, i, ARC, b[0], b[1], b[2], b[3], c[0], c[1], c[2], c[3])
         r2 = set_arc(segments, i, 2 * ARC, c[0], c[1], c[2], c[3], d[0], d[1], d[2], d[3])

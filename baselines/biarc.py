@@ -15,7 +15,7 @@ from quatspline.primitives import mul
 
 STILL = 1e-14
 """A velocity below this share of its neighbours' has no direction; a sum below it no bisector."""
-SHORT = 1e-9
+SHORT = 1e-11
 """An arc with a chord below this share of the step is none: motion turns back on itself there."""
 
 

@@ -7,14 +7,14 @@ from typing import Literal
 
 import numpy as np
 
-from quatspline._jit import compiled, fit_kernel
+from quatspline._jit import compiled, fit_kernel, inlined
 from quatspline.families.circles import BLEND, SPLIT, combine, dot, set_circle, unit
 from quatspline.families.segments import SegmentCurve
 from quatspline.families.tangents import keyframe
 from quatspline.keyframes import Keyframes
 
-FLAT = 4 * np.finfo(float).eps
-"""Three points whose triangle is lower than this hold only two: a great circle goes through them."""
+SAME = 1e-12
+"""Keyframes nearer than this are one: the direction from one to the other is rounding."""
 
 BLENDS = {"smooth": (0.0, 3.0, -2.0), "linear": (1.0, 0.0, 0.0)}
 """Coefficients of f from u^1 to u^3."""
@@ -53,33 +53,66 @@ class CircularBlend(SegmentCurve):
         self._solve(FIT, np.array(BLENDS[blend]))
 
 
+@inlined
+def _chord(b, p):
+    """p - b, its part along b that of the sphere, whatever rounding says."""
+    d = combine(1.0, p, -1.0, b)
+    return combine(1.0, d, -dot(d, b) - 0.5 * dot(d, d), b)
+
+
 @compiled
 def _circle(a, b, c):
-    """The circle through a, b, c as seen from b: X, Y of `circles` (1) and the angles of a and c."""
-    ab, ac, bc = combine(1.0, b, -1.0, a), combine(1.0, c, -1.0, a), combine(1.0, c, -1.0, b)
-    size = dot(ab, ab)
-    height = combine(1.0, ac, -dot(ab, ac) / size if size > 0.0 else 0.0, ab)
-    if size == 0.0 or dot(height, height) <= FLAT * FLAT:
+    """The circle through a, b, c as seen from b: X, Y of `circles` (1) and the angles of a and c.
+
+    In the plane with b at the origin and the farther of a and c at (l, 0), the other one at (x, y),
+    the centre is (l/2, k).  What is small is taken from the shortest of the three chords.
+    """
+    ba, bc = _chord(b, a), _chord(b, c)
+    ac = combine(1.0, bc, -1.0, ba)
+    if min(dot(ba, ba), dot(bc, bc), dot(ac, ac)) < SAME * SAME:
         return _great(a, b, c)
-    # inscribed angles are half of the arcs, r = |ab| |bc| |ac| / (2 |ab x ac|)
-    area = math.sqrt(size * dot(height, height))
-    before, after = -2.0 * math.atan2(area, dot(ac, bc)), 2.0 * math.atan2(area, dot(ab, ac))
-    r = 0.5 * math.sqrt(size * dot(bc, bc) * dot(ac, ac)) / area
-    # in the plane: towards = ab/|ab|, away = height/|height|; the centre sees ab at half its angle
-    towards, away = unit(ab), unit(height)
-    half = 0.5 * before
-    x = combine(r * math.cos(half), towards, -r * math.sin(half), away)
-    y = combine(r * math.sin(half), towards, r * math.cos(half), away)
-    return x, y, before, after
+    onward = dot(bc, bc) > dot(ba, ba)  # c is the farther one
+    far, near = (bc, ba) if onward else (ba, bc)
+    back = combine(1.0, near, -1.0, far)
+    ahead, length = unit(far), math.sqrt(dot(far, far))
+    x = dot(near, ahead)
+    short = near if dot(near, near) < dot(back, back) else back
+    aside = combine(1.0, short, -dot(short, ahead), ahead)
+    aside = combine(1.0, aside, -dot(aside, ahead), ahead)
+    y = math.sqrt(dot(aside, aside))
+    if y == 0.0:
+        return _great(a, b, c)
+    k = 0.5 * (x * dot(back, ahead) / y + y)
+    # X points to the side on which c comes before a; a chord p is seen at half the angle of its arc,
+    # atan2(p . Y, p . X), from the centre, with p . Y = |p|^2 / 2
+    e, f = (k, -0.5 * length) if onward else (-k, 0.5 * length)
+    aside = unit(aside)
+    tangent, centre = combine(e, ahead, f, aside), combine(0.5 * length, ahead, k, aside)
+    square, along = 0.5 * length * length, length * e
+    square_near, along_near = 0.5 * (x * x + y * y), x * e + y * f
+    if onward:
+        return (
+            tangent,
+            centre,
+            -2.0 * math.atan2(square_near, -along_near),
+            2.0 * math.atan2(square, along),
+        )
+    return (
+        tangent,
+        centre,
+        -2.0 * math.atan2(square, -along),
+        2.0 * math.atan2(square_near, along_near),
+    )
 
 
 @compiled
 def _great(a, b, c):
     """The great circle through b and the farther of a and c, for triples that hold two points."""
     ba, bc = combine(1.0, a, -1.0, b), combine(1.0, c, -1.0, b)
-    far = bc if dot(bc, bc) >= dot(ba, ba) else ba
-    x = unit(combine(1.0, far, 0.5 * dot(far, far), b))  # far . b = -|far|^2 / 2
-    before, after = math.atan2(dot(ba, x), dot(a, b)), math.atan2(dot(bc, x), dot(c, b))
+    far = c if dot(bc, bc) >= dot(ba, ba) else a
+    x = unit(combine(1.0, far, -dot(far, b), b))
+    x = unit(combine(1.0, x, -dot(x, b), b))  # twice: b may be nearly its antipode
+    before, after = math.atan2(dot(a, x), dot(a, b)), math.atan2(dot(c, x), dot(c, b))
     return x, combine(-1.0, b, 0.0, b), before, after
 
 
@@ -92,14 +125,15 @@ def _set(segments, i, k, q, j, sign, closed, h):
         set_circle(segments, i, k, b, x, y, 0.0, after, 0.0)
         return
     x, y, before, after = _circle(keyframe(q, j - 1, sign), b, keyframe(q, j + 1, sign))
-    # angle = s (p + r s) with s = t - t_j: Newton's form through (-h_0, before), (0, 0), (h_1, after)
+    # the quadratic in t through (-h_0, before), (0, 0), (h_1, after) bends by r = (slopes' step) / time
     n = h.size
     h0, h1, own = h[(j - 1) % n], h[j % n], h[i]
-    left, right = before / -h0, after / h1
-    r = (right - left) / (h0 + h1)
-    p = left + r * h0
-    s = 0.0 if i == j else -h0  # the segment begins at t_j or at t_{j-1}
-    set_circle(segments, i, k, b, x, y, s * (p + r * s), own * (p + 2.0 * r * s), own * own * r)
+    r = (after / h1 + before / h0) / (h0 + h1)
+    bend = -r * own * own
+    if i == j:  # the segment begins at t_j, or at t_{j-1}
+        set_circle(segments, i, k, b, x, y, 0.0, after, bend)
+    else:
+        set_circle(segments, i, k, b, x, y, before, -before, bend)
 
 
 @fit_kernel

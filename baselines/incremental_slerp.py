@@ -10,10 +10,9 @@ from quatspline._jit import REACH, fit_kernel, inlined
 from quatspline.families.arcs import ARC, SIZE, set_arc
 from quatspline.families.driver import fit_tracks
 from quatspline.families.segments import SegmentCurve
-from quatspline.families.tangents import keyframe
+from quatspline.families.tangents import keyframe, moved, step
 from quatspline.keyframes import Keyframes
 from quatspline.options import Count
-from quatspline.primitives import arc_angle, slerp
 
 
 class IncrementalSlerp(SegmentCurve):
@@ -82,11 +81,10 @@ def FIT(q, h, closed, sign, parameters, segments, report):
     """(1) from every keyframe; the arc of (2) from p_k is a segment."""
     steps = int(parameters[0])
     for i in range(h.size):
-        a, b = keyframe(q, i, sign), keyframe(q, i + 1, sign)
-        p = a
-        b = slerp(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3], 1.0 / steps)
-        _, _, cosine = arc_angle(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3])
-        k = 2.0 * cosine
+        a = p = keyframe(q, i, sign)
+        x, y, z = step(q, i, i + 1, sign)
+        b = moved(a, x / steps, y / steps, z / steps)
+        k = 2.0 * math.cos(math.sqrt(x * x + y * y + z * z) / steps)
         for j in range(i * steps, (i + 1) * steps):
             r = _unit(b)
             theta = set_arc(segments, j, 0, p[0], p[1], p[2], p[3], r[0], r[1], r[2], r[3])

@@ -23,6 +23,9 @@ class InterpolatePyLog(InterpolatePyCurve):
     support = None
     constant_rate = "no"
     departs = {
+        "test_equivariance_at_half_turns": "takes logarithms at a fixed reference",
+        "test_spacing_ratios": "its linear system is in raw units: rank-deficient at ratios of 1e9",
+        "test_time_scale": "its linear system is in raw units: rank-deficient in nanoseconds",
         "test_equivariance": "takes logarithms at a fixed reference",
         "test_keeps_given_signs": "puts neighbours on one hemisphere itself",
         "test_order": "4 only from several hundred keyframes on; 4.5 at fewer",

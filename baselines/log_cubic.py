@@ -11,6 +11,7 @@ from quatspline import quaternion
 from quatspline.families.rotation_vector import PHI, Q0, ROTATION_VECTOR
 from quatspline.families.segments import SegmentCurve
 from quatspline.keyframes import Keyframes
+from quatspline.quaternion import FloatArray
 
 
 class LogCubicSpline(SegmentCurve):
@@ -58,15 +59,26 @@ class LogCubicSpline(SegmentCurve):
                 "closed=True: log-cubic closes only curves that return as +q_0, not -q_0"
             )
         base = q[reference]
-        x = quaternion.log(quaternion.mul(quaternion.conj(base), q))
-        spline = CubicSpline(keyframes.knots, x, bc_type=ends)
+        x = _logs(q, reference)
+        spline = CubicSpline(keyframes.knots / keyframes.unit, x, bc_type=ends)
         # coefficients (power from 3 to 0, segment, track, component) of t become those of u
         power = np.arange(4)
-        c = spline.c[::-1] * (h ** power[:, None])[:, :, None, None]
+        c = spline.c[::-1] * ((h / keyframes.unit) ** power[:, None])[:, :, None, None]
         segments = np.zeros((len(base), h.size, self.family.constants))
         segments[:, :, Q0:PHI] = base[:, None]
         phi = segments[:, :, PHI:].reshape(*segments.shape[:2], 3, 6)
-        phi[..., :4] = np.moveaxis(c, (0, 1, 2, 3), (3, 1, 0, 2))
+        constants = np.array([x[:-1], x[1:] - x[:-1], -c[2] - c[3], -c[3]])  # `quintics` (1)
+        phi[..., :4] = np.moveaxis(constants, (0, 1, 2, 3), (3, 1, 0, 2))
         # Bernstein coefficients bound |phi|
         hull = c[0], c[0] + c[1] / 3, c[0] + (2 * c[1] + c[2]) / 3, c.sum(axis=0)
         self._set_segments(segments, max(np.linalg.norm(b, axis=-1).max() for b in hull))
+
+
+def _logs(q: FloatArray, reference: int) -> FloatArray:
+    """x_i of (1) for keyframes (n, K, 4); a full turn from the reference goes on as its neighbour."""
+    relative = quaternion.mul(quaternion.conj(q[reference]), q)
+    x = quaternion.log(relative)
+    opposite = np.flatnonzero((np.abs(relative[..., 0] + 1.0) < quaternion.OPPOSITE).any(axis=1))
+    for i in sorted(opposite, key=lambda i: abs(i - reference)):
+        x[i] = quaternion.log_towards(relative[i], x[i - 1 if i > reference else i + 1])
+    return x

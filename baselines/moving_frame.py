@@ -22,6 +22,8 @@ Rates: with S = C^T B', P = C^T B (symmetric) and M = tr(P) I - P, derivatives o
 from __future__ import annotations
 
 import math
+import threading
+import warnings
 from typing import Any, Literal
 
 import numpy as np
@@ -43,8 +45,9 @@ from quatspline.keyframes import Keyframes
 from quatspline.primitives import cross, mul
 from quatspline.quaternion import FloatArray
 
-# notation: the constants of a segment are a base quaternion (4), the middle of its arc, then the
-# coefficients of B seen from there, nine a power of u, column by column: B[row, j] is entry 3 j + row.
+# notation: the constants of a segment are a base quaternion (4), the middle of its arc, then those of
+# B seen from there (`_entry`), nine for each of f, r, g_0 ..., column by column: B[row, j] is entry
+# 3 j + row.
 COEFFICIENTS = 4
 _B = CONSTANTS + COEFFICIENTS
 
@@ -147,14 +150,16 @@ def _rate(p, v):
 
 @inlined
 def _entry(s, p, j, u, quintic, m):
-    """Derivative m of an entry of B at u: a polynomial of degree 3 or 5."""
-    a, b, c = s[p + 9, j], s[p + 18, j], s[p + 27, j]
-    d, e = (s[p + 36, j], s[p + 45, j]) if quintic else (0.0, 0.0)
+    """Derivative m of an entry of B at u: f + r u + u (1 - u) g(u), exact at both ends."""
+    a, b = s[p + 18, j], s[p + 27, j]
+    c, d = (s[p + 36, j], s[p + 45, j]) if quintic else (0.0, 0.0)
+    g, w = ((d * u + c) * u + b) * u + a, u - u * u
     if m == 0:
-        return ((((e * u + d) * u + c) * u + b) * u + a) * u + s[p, j]
+        return w * g + (s[p + 9, j] * u + s[p, j])
+    g1, w1 = (3.0 * d * u + 2.0 * c) * u + b, 1.0 - 2.0 * u
     if m == 1:
-        return (((5.0 * e * u + 4.0 * d) * u + 3.0 * c) * u + 2.0 * b) * u + a
-    return ((20.0 * e * u + 12.0 * d) * u + 6.0 * c) * u + 2.0 * b
+        return w * g1 + (w1 * g + s[p + 9, j])
+    return w * (6.0 * d * u + 2.0 * c) + 2.0 * (w1 * g1 - g)
 
 
 @inlined
@@ -293,8 +298,6 @@ class MovingFrame(SegmentCurve):
         degree: Literal[3, 5] = 3,
         ends: Literal["natural", "not-a-knot", "complete"] = "natural",
     ) -> None:
-        from scipy.interpolate import make_interp_spline
-
         self.continuity, self.order = degree - 1, degree + 1
         self.family = FAMILIES[degree]
         least = {"natural": (degree + 1) // 2, "not-a-knot": degree + 1, "complete": 2}[ends]
@@ -303,28 +306,46 @@ class MovingFrame(SegmentCurve):
                 f"quaternions has {keyframes.count} keyframes: degree={degree} with ends={ends!r} "
                 f"needs {least}"
             )
-        t, q = keyframes.knots, np.moveaxis(keyframes.tracks, 0, 1)
+        t, q = keyframes.knots / keyframes.unit, np.moveaxis(keyframes.tracks, 0, 1)
         if keyframes.closed:
             q = np.concatenate([q, keyframes.signs[:, None] * q[:1]])
         q = quaternion.align(q)
         axes = quaternion.rotate(q[..., None, :], np.eye(3))  # (n, K, column, component)
         if keyframes.closed:
             axes[-1] = axes[0]
-        conditions = _conditions(keyframes, degree, ends, q, axes)
-        spline = make_interp_spline(t, axes, degree, bc_type=conditions)
-        self._set_segments(_constants(spline, degree, t, q), 0.0)
+        conditions = "periodic" if keyframes.closed else _conditions(t, degree, ends, q, axes)
+        spline = _interpolated(t, axes, degree, conditions)
+        self._set_segments(_constants(spline, degree, t, q, axes), 0.0)
 
 
-def _conditions(keyframes: Keyframes, k: int, ends: str, q: FloatArray, axes: FloatArray) -> Any:
+def _interpolated(t: FloatArray, axes: FloatArray, degree: int, conditions: Any) -> Any:
+    """scipy's spline; refused where its linear system is singular to working precision."""
+    from scipy.interpolate import make_interp_spline
+    from scipy.linalg import LinAlgError, LinAlgWarning
+
+    try:
+        with _filtering, warnings.catch_warnings():
+            warnings.simplefilter("error", LinAlgWarning)
+            return make_interp_spline(t, axes, degree, bc_type=conditions)
+    except (LinAlgWarning, LinAlgError):
+        h = np.diff(t)
+        raise ValueError(
+            f"times: spacings in the ratio {h.max() / h.min():.3g} are too uneven for degree={degree}: "
+            "the spline's linear system is singular to working precision"
+        ) from None
+
+
+_filtering = threading.Lock()
+"""Filters of warnings belong to the process."""
+
+
+def _conditions(t: FloatArray, k: int, ends: str, q: FloatArray, axes: FloatArray) -> Any:
     """The end conditions as scipy takes them: (derivative, values) at either end."""
-    if keyframes.closed:
-        return "periodic"
     if ends == "not-a-knot":
         return None
     if ends == "natural":
         natural = [(m, np.zeros(axes.shape[1:])) for m in range((k + 1) // 2, k)]
         return natural, natural
-    t = keyframes.knots
     start = _clamped(t[: k + 1], q[: k + 1], axes[0])
     end = _clamped(t[: -k - 2 : -1], q[: -k - 2 : -1], axes[-1])
     return start[: (k - 1) // 2], end[: (k - 1) // 2]
@@ -335,21 +356,25 @@ def _clamped(t: FloatArray, q: FloatArray, axes: FloatArray) -> list[tuple[int, 
 
     In the chart x_j = ln(q_0^-1 q_j) omega = 2 x' and alpha = 2 x'' at its centre.
     """
-    x = quaternion.log(quaternion.mul(quaternion.conj(q[0]), q[1:]))
-    powers = np.vander(t[1:] - t[0], len(t), increasing=True)[:, 1:]
-    c = np.linalg.solve(powers, x.reshape(len(x), -1)).reshape(x.shape)
-    spin = np.cross(np.eye(3), 2.0 * c[0][:, None])  # rows (columns of [omega], transposed)
-    turn = np.cross(np.eye(3), 4.0 * c[1][:, None]) if len(c) > 1 else np.zeros_like(spin)
-    spin, turn = -spin, -turn  # [omega] e_j = omega x e_j
+    since = t[1:] - t[0]
+    ratios = since / np.where(np.eye(len(since)) > 0, 1.0, since - since[:, None])  # (j, k), k != j
+    slopes = np.prod(np.where(np.eye(len(since)) > 0, 1.0, ratios), axis=1) / since
+    others = (1.0 / since).sum() - 1.0 / since
+    x = quaternion.chart(q)
+    velocity = 2.0 * np.tensordot(slopes, x, 1)
+    acceleration = 2.0 * np.tensordot(-2.0 * slopes * others, x, 1)
+    spin = -np.cross(np.eye(3), velocity[:, None])  # [omega] e_j = omega x e_j
+    turn = -np.cross(np.eye(3), acceleration[:, None])
     return [(1, spin @ axes), (2, (spin @ spin + turn) @ axes)]
 
 
-def _constants(spline: Any, k: int, t: FloatArray, q: FloatArray) -> FloatArray:
-    """Constants (K, segments, ...): the middle of each arc and B's coefficients seen from there."""
-    h = np.diff(t)
+def _constants(spline: Any, k: int, t: FloatArray, q: FloatArray, axes: FloatArray) -> FloatArray:
+    """Constants (K, segments, ...): the middle of each arc and B's constants seen from there."""
+    h = np.diff(t)[:, None, None, None]
     middle = quaternion.normalise(q[:-1] + q[1:])
-    scale = h[:, None, None, None]
-    powers = [spline(t[:-1], m) * scale**m / math.factorial(m) for m in range(k + 1)]
-    seen = quaternion.rotate(quaternion.conj(middle)[:, :, None, None], np.stack(powers, axis=2))
-    rows = seen.reshape(*seen.shape[:2], -1)
-    return np.ascontiguousarray(np.moveaxis(np.concatenate([middle, rows], axis=-1), 1, 0))
+    powers = [spline(t[:-1], m) * h**m / math.factorial(m) for m in range(2, k + 1)]
+    bends = -np.cumsum(powers[::-1], axis=0)[::-1]  # u^k - u = -u (1 - u) (1 + ... + u^(k - 2))
+    rows = np.stack([axes[:-1], axes[1:] - axes[:-1], *bends], axis=2)
+    seen = quaternion.rotate(quaternion.conj(middle)[:, :, None, None], rows)
+    flat = seen.reshape(*seen.shape[:2], -1)
+    return np.ascontiguousarray(np.moveaxis(np.concatenate([middle, flat], axis=-1), 1, 0))

@@ -29,7 +29,10 @@ class NumpyQuaternionSquad(PeerCurve):
     support = 4
     constant_rate = "everywhere"
     closable = False
-    departs = {"test_keeps_given_signs": "its slerps go the short way"}
+    departs = {
+        "test_keeps_given_signs": "its slerps go the short way",
+        "test_spacing_ratios": "norms off by 1e-8 where one spacing is 1e9 times the next",
+    }
 
     def _fit(self, keyframes: Keyframes, *, unflip: bool = False) -> None:
         import quaternion

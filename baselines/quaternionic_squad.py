@@ -24,6 +24,7 @@ class QuaternionicSquad(PeerCurve):
     support = 4
     constant_rate = "everywhere"
     closable = False
+    departs = {"test_spacing_ratios": "norms off by 1e-8 where one spacing is 1e9 times the next"}
 
     def _fit(self, keyframes: Keyframes) -> None:
         import quaternionic

@@ -26,6 +26,7 @@ class ScipyRotationSpline(PeerCurve):
     orders = (0, 1, 2)
     departs = {
         "test_keeps_given_signs": "rotations carry no sign",
+        "test_spacing_ratios": "its rates overflow, or it misses keyframes by 1e-7, at ratios of 1e9",
         "test_time_scale": "its iteration ends at a change of rates of 1e-9, whatever the unit of time",
     }
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from quatspline._jit import REACH, compiled, fit_kernel
 from quatspline.families.bezier import set_controls
-from quatspline.families.nested import TRIANGLE
+from quatspline.families.nested import TRIANGLE, restored
 from quatspline.families.segments import SegmentCurve
 from quatspline.families.tangents import CHART, SECANT, end_velocity, keyframe, moved
 from quatspline.keyframes import Keyframes
@@ -84,7 +84,8 @@ def _handle(q, sign, i, share):
     if length < ANTIPODES:  # half a turn forth and back: no mean direction, no velocity
         return b
     k = 1.0 / length
-    return slerp(b[0], b[1], b[2], b[3], k * w, k * x, k * y, k * z, share)
+    p = slerp(b[0], b[1], b[2], b[3], k * w, k * x, k * y, k * z, share)
+    return restored(p, b)
 
 
 @fit_kernel

@@ -23,7 +23,10 @@ class SplinesCatmullRom(PeerCurve):
     order = 3
     support = 4
     constant_rate = "interior"
-    departs = {"test_keeps_given_signs": "puts neighbours on one hemisphere itself"}
+    departs = {
+        "test_equivariance_at_half_turns": "rounding decides the way round at half a turn",
+        "test_keeps_given_signs": "puts neighbours on one hemisphere itself",
+    }
 
     def _fit(self, keyframes: Keyframes) -> None:
         from splines.quaternion import CatmullRom

@@ -22,7 +22,10 @@ class SplinesSquad(PeerCurve):
     order = 3
     support = 4
     constant_rate = "everywhere"
-    departs = {"test_keeps_given_signs": "puts neighbours on one hemisphere itself"}
+    departs = {
+        "test_equivariance_at_half_turns": "rounding decides the way round at half a turn",
+        "test_keeps_given_signs": "puts neighbours on one hemisphere itself",
+    }
 
     def _fit(self, keyframes: Keyframes) -> None:
         from splines.quaternion import Squad

@@ -125,6 +125,26 @@ def test_tracks_are_single_curves(scheme: Scheme) -> None:
             assert apart(curve(samples, order)[(slice(None), *i)], single(samples, order)) < SAME
 
 
+@applies(lambda scheme: scheme.peer is None)
+def test_a_sample_does_not_depend_on_its_neighbours(scheme: Scheme) -> None:
+    """To the last digit: alone, among others, in any order."""
+    curve = example(scheme)
+    t = np.random.default_rng(3).permutation(dense(curve))
+    for order in scheme.orders:
+        together = curve(t, order)
+        assert np.array_equal(together, [curve(float(x), order) for x in t])
+        assert np.array_equal(np.sort(together, axis=0), np.sort(curve(np.sort(t), order), axis=0))
+
+
+@applies(lambda scheme: scheme.iterative)
+def test_the_residual_is_what_the_curve_misses(scheme: Scheme) -> None:
+    curve = curve_of(scheme, None, walk(count_of(scheme), 90.0), tolerance=1e-8)
+    report = curve.solve_report
+    assert report is not None
+    miss = quaternion.distance(curve(curve.times), curve.quaternions).max()
+    assert miss <= report.residual + 1e-14
+
+
 @applies(lambda scheme: scheme.iterative)
 def test_reports_have_the_shape_of_the_tracks(scheme: Scheme) -> None:
     n = count_of(scheme)
@@ -231,9 +251,10 @@ def test_time_shift(scheme: Scheme) -> None:
 
 
 def test_time_scale(scheme: Scheme) -> None:
+    """Seconds, nanoseconds or years: a curve is a function of its keyframes, not of a unit."""
     curve = example(scheme)
     t = inside(curve.times, 4)
-    for scale in (1e-3, 4.0, 1e6):
+    for scale in (1e-9, 1e-6, 1e-3, 4.0, 1e6, 1e9):
         other = curve_of(scheme, curve.times * scale, curve.quaternions)
         for order in scheme.orders:
             scaled = other(t * scale, order) * scale**order
@@ -326,6 +347,106 @@ def test_half_turns(scheme: Scheme) -> None:
         solved = curve.solve_report is None or curve.solve_report.converged
         if scheme.interpolates and solved:
             assert apart_up_to_sign(curve(curve.times), curve.quaternions) < HALF_TURN_HIT, short
+
+
+EXACT_TURNS = {
+    "halves about x": (2, (1.0, 0.0, 0.0)),
+    "halves about (3, 4, 0)": (2, (3.0, 4.0, 0.0)),
+    "thirds about (1, 1, 1)": (3, (1.0, 1.0, 1.0)),
+    "quarters about -y": (4, (0.0, -1.0, 0.0)),
+    "sixths about z": (6, (0.0, 0.0, 1.0)),
+}
+
+
+def exact_turn(parts: int, axis: tuple[float, ...], count: int, base: Any = None) -> np.ndarray:
+    """Steps of a whole share of a turn in exact numbers where there are such: -1 is met exactly."""
+    n = np.array(axis) / math.hypot(*axis)
+    half = math.pi / parts
+    cosine = {2: 0.0, 3: 0.5}.get(parts, math.cos(half))
+    step = np.array([cosine, *(0.5 * np.ones(3) if parts == 3 else math.sin(half) * n)])
+    q = [np.array([1.0, 0.0, 0.0, 0.0] if base is None else base)]
+    for _ in range(count - 1):
+        q.append(quaternion.mul(q[-1], step))
+    return np.array(q)
+
+
+@applies(lambda scheme: scheme.constant_rate != "no" and rated(scheme))
+@pytest.mark.parametrize("turns", EXACT_TURNS)
+def test_exact_turns(scheme: Scheme, turns: str) -> None:
+    """A spin by halves, thirds, quarters of a turn: its logarithm passes -1, which has no direction."""
+    parts, axis = EXACT_TURNS[turns]
+    rate = 2.0 * math.pi / parts
+    for n in {max(4, scheme.min_keyframes), max(8, scheme.min_keyframes)}:
+        for base in (None, random_units(1, 4)[0]):
+            curve = curve_of(scheme, None, exact_turn(parts, axis, n, base))
+            lo, hi = (1.0, n - 2.0) if scheme.constant_rate == "interior" else (0.0, n - 1.0)
+            speed = np.linalg.norm(curve(np.linspace(lo, hi, 61)[1:-1], 1), axis=-1)
+            assert np.abs(speed - rate).max() < SPIN * rate, n
+
+
+@applies(lambda scheme: scheme.closable and scheme.constant_rate != "no" and rated(scheme))
+@pytest.mark.parametrize("turns", EXACT_TURNS)
+def test_exact_turns_closed(scheme: Scheme, turns: str) -> None:
+    parts, axis = EXACT_TURNS[turns]
+    n = parts * -(-max(4, scheme.min_keyframes) // parts)
+    q = exact_turn(parts, axis, n, random_units(1, 4)[0])
+    curve = curve_of(scheme, None, q, closed=True)
+    speed = np.linalg.norm(curve(np.linspace(0.0, n, 61)[1:-1], 1), axis=-1)
+    assert np.abs(speed - 2.0 * math.pi / parts).max() < SPIN * 2.0 * math.pi / parts
+
+
+def test_equivariance_at_half_turns(scheme: Scheme) -> None:
+    """Steps of exactly half a turn: no rounding decides which way round, from whatever frame."""
+    n = count_of(scheme, 5)
+    quarter = exact_turn(2, (1.0, 0.0, 0.0), n)
+    one = np.array([1.0, 0.0, 0.0, 0.0])
+    wanted = curve_of(scheme, None, quarter, **excused(scheme))
+    t = inside(wanted.times, 5)
+    for p in random_units(4, 11):
+        for left, right in ((p, one), (one, p)):
+
+            def turned(q: np.ndarray, a: np.ndarray = left, b: np.ndarray = right) -> np.ndarray:
+                return quaternion.mul(quaternion.mul(a, q), b)
+
+            other = curve_of(scheme, None, turned(quarter), **excused(scheme))
+            assert apart_up_to_sign(other(t), turned(wanted(t))) < HALF_TURN_HIT
+
+
+@applies(lambda scheme: scheme.interpolates)
+def test_rounded_holds(scheme: Scheme) -> None:
+    """A pose held, but written with rounding: the direction from one to the next means nothing."""
+    rng = np.random.default_rng(5)
+    n = count_of(scheme)
+    for size in (1e-16, 1e-15, 1e-13, 1e-10):
+        for held in ((2,), (1, 2), (0,), (n - 2,), (1, 4)):
+            q = walk(n, 170.0, seed=len(held))
+            for i in held:
+                q[i + 1] = q[i]
+            q = q + size * rng.normal(size=q.shape)
+            curve = curve_of(scheme, knots_of(scheme, n), q, **excused(scheme))
+            t = dense(curve)
+            assert np.abs(np.linalg.norm(curve(t), axis=-1) - 1.0).max() < LONG_UNIT, (size, held)
+            assert all(np.isfinite(curve(t, order)).all() for order in scheme.orders), (size, held)
+            if curve.solve_report is None or curve.solve_report.converged:
+                assert apart_up_to_sign(curve(curve.times), curve.quaternions) < HIT, (size, held)
+
+
+@applies(lambda scheme: scheme.non_uniform and scheme.interpolates)
+def test_spacing_ratios(scheme: Scheme) -> None:
+    """One spacing up to a thousand million times its neighbour: keyframes are met all the same."""
+    n = count_of(scheme)
+    ratios = (1e3, 1e6, 1e9)
+    patterns = [p for r in ratios for p in ([1.0, r], [r, 1.0], [1.0, 1.0, r], [r, r, 1.0])]
+    for pattern in patterns:
+        knots = np.concatenate([[0.0], np.cumsum(np.resize(pattern, n - 1))])
+        for last in (n, max(3, scheme.min_keyframes)):
+            q = walk(last, 60.0)
+            curve = curve_of(scheme, knots[:last], q, **excused(scheme))
+            t = dense(curve)
+            assert np.abs(np.linalg.norm(curve(t), axis=-1) - 1.0).max() < LONG_UNIT, pattern
+            assert all(np.isfinite(curve(t, order)).all() for order in scheme.orders), pattern
+            if curve.solve_report is None or curve.solve_report.converged:
+                assert apart_up_to_sign(curve(curve.times), curve.quaternions) < HIT, pattern
 
 
 def test_tiny_steps(scheme: Scheme) -> None:
@@ -699,6 +820,47 @@ INPUT = {
     "three columns": (None, KEYS[:, :3], {}, r"^quaternions has shape \(12, 3\)"),
     "no track": (None, np.empty((12, 0, 4)), {}, r"^quaternions has shape \(12, 0, 4\)"),
     "ragged": (None, [[1, 0, 0, 0], [1, 0, 0]], {}, r"^quaternions"),
+    "masked": (
+        None,
+        np.ma.array(KEYS, mask=KEYS[3] == KEYS),
+        {},
+        r"^quaternions\[3, 0\] is masked",
+    ),
+    "masked times": (
+        np.ma.array(range(12), mask=np.arange(12) == 5),
+        KEYS,
+        {},
+        r"^times\[5\] is masked",
+    ),
+    "homogeneous": (
+        None,
+        np.tile([[0.0, -1, 0, 3], [1, 0, 0, 2], [0, 0, 1, 1], [0, 0, 0, 1]], (12, 1, 1)),
+        {},
+        r"^quaternions has shape \(12, 4, 4\) .*Rotation\.from_matrix",
+    ),
+    "matrices": (None, np.tile(np.eye(3), (12, 1, 1)), {}, r"Rotation\.from_matrix"),
+    "closed": (None, KEYS, {"closed": 2}, r"^closed=2: expected True or False"),
+    "closed far": (None, KEYS, {"closed": 3000000}, r"^closed=3000000: expected True or False"),
+    "align": (None, KEYS, {"align": "yes"}, r"^align='yes': expected True or False"),
+    "denormal": (
+        replaced(range(12), 1, 5e-324),
+        KEYS,
+        {},
+        r"^times\[0\] to times\[1\] is 5e-324, shorter than .*float64 cannot carry",
+    ),
+    "no digits": (
+        replaced(range(12), 1, 1e-40),
+        KEYS,
+        {},
+        r"^times\[0\] to times\[1\] is 1e-40, below",
+    ),
+    "long": (
+        replaced(range(12), 11, 1e300),
+        KEYS,
+        {},
+        r"^times\[10\] to times\[11\] is 1e\+300, longer",
+    ),
+    "no time": (np.array(["NaT"] * 12, "datetime64[s]"), KEYS, {}, r"^times\[0\] is not a time"),
     "complex": (None, KEYS + 0j, {}, r"^quaternions: complex"),
     "text": (None, [["a"] * 4] * 12, {}, r"^quaternions: not real numbers"),
     "objects": (None, [[None] * 4] * 12, {}, r"^quaternions: not real numbers"),
@@ -814,6 +976,27 @@ def test_unit_norm_is_restored(scheme: Scheme) -> None:
     assert apart(curve.quaternions, q) < UNIT
     t = dense(curve)
     assert apart(curve(t), example(scheme)(t)) < SAME
+
+
+STAMPS = 1_650_000_000_000_000_000
+"""Nanoseconds since 1970: float64 tells those of today apart by 256."""
+
+
+@applies(lambda scheme: scheme.non_uniform)
+def test_integer_stamps_are_subtracted_as_integers(scheme: Scheme) -> None:
+    n = count_of(scheme)
+    knots = np.cumsum(np.resize([10_000_000, 10_000_100, 9_999_900, 1_000_001], n)) - 10_000_000
+    curve, inner = (curve_of(scheme, t, walk(n, 20.0)) for t in (STAMPS + knots, knots))
+    t = np.round(inside(knots.astype(float))).astype(np.int64)
+    for order in scheme.orders:
+        assert np.array_equal(curve(STAMPS + t, order), inner(t, order))
+        assert np.array_equal(
+            curve((STAMPS + t).astype("datetime64[ns]").astype(int), order), inner(t, order)
+        )
+    assert curve.domain == (STAMPS, STAMPS + int(knots[-1]))
+    moments = (STAMPS + knots).astype("datetime64[ns]")
+    timed, seconds = (curve_of(scheme, x, walk(n, 20.0)) for x in (moments, knots / 1e9))
+    assert apart(timed(moments), seconds(knots / 1e9)) < SAME
 
 
 # -- the tests of the tests ---------------------------------------------------------------------

@@ -131,9 +131,9 @@ def test_cubic_ends() -> None:
     """natural: B'' = 0; not-a-knot: one cubic on the first two segments; complete: its own."""
     knots, q = uneven(9), walk(9, 50.0)
     natural, knotless, complete = (qs.build("moving-frame", knots, q, ends=e) for e in ENDS)
-    coefficients = natural.segments[0, :, 4:].reshape(8, 4, 3, 3)
-    assert np.abs(coefficients[0, 2]).max() < 1e-12
-    cubic = knotless.segments[0, :, 4:].reshape(8, 4, 3, 3)[:, 3]
+    _, _, g0, g1 = natural.segments[0, 0, 4:].reshape(4, 3, 3)
+    assert np.abs(2.0 * (g1 - g0)).max() < 1e-12
+    cubic = -knotless.segments[0, :, 4:].reshape(8, 4, 3, 3)[:, 3]
     seen = [
         quaternion.rotate(knotless.segments[0, i, :4], cubic[i]) / np.diff(knots)[i] ** 3
         for i in (0, 1)

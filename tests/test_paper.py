@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import quatspline as qs
+from powers import powers
 from quatspline import quaternion
 from quatspline.families import cumulative
 from walks import apart, random_units, uneven, walk
@@ -232,7 +233,7 @@ def test_rates_at_the_keyframes() -> None:
 def coefficients_of(curve: Any, i: int) -> np.ndarray:
     """The scheme's own polynomials of segment i, per unit of the step: (3, 6)."""
     constants = curve.segments[0, i]
-    angles = constants[cumulative.ANGLES :].reshape(3, 6)
+    angles = powers(constants[cumulative.ANGLES :].reshape(3, 6))
     frames = curve.quaternions
     steps = np.linalg.norm(
         quaternion.log(quaternion.mul(quaternion.conj(frames[:-1]), frames[1:])), axis=1
@@ -259,7 +260,7 @@ def test_blending_functions() -> None:
 def test_no_fifth_power_on_any_knots(closed: bool) -> None:
     knots = uneven(9 if closed else 8)
     curve = qs.QuarticSpline(knots, walk(8, 40.0, seed=5), closed=closed)
-    angles = curve.segments[0, :, cumulative.ANGLES :].reshape(-1, 3, 6)
+    angles = powers(curve.segments[0, :, cumulative.ANGLES :].reshape(-1, 3, 6))
     assert np.abs(angles[..., 5]).max() < CLOSE
     assert np.abs(angles[..., 4]).max() > 0.01
 

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import quatspline as qs
+from powers import kept
 from quatspline.curve import Curve
 from quatspline.families.rotation_vector import PHI, ROTATION_VECTOR, SIZE
 from quatspline.primitives import NEAR
@@ -18,11 +19,11 @@ U = (0.0, 0.125, 0.5, 0.875, 1.0)
 
 
 def segment(phi: FloatArray) -> Curve:
-    """A curve of one segment with coefficients phi (3, 6) and base 1."""
+    """A curve of one segment with powers phi (3, 6) and base 1."""
     curve = qs.build("local-quintic", [0.0, SPACING], [[1.0, 0.0, 0.0, 0.0], [0.8, 0.6, 0.0, 0.0]])
     segments = np.zeros((1, 1, SIZE))
     segments[0, 0, 0] = 1.0
-    segments[0, 0, PHI:] = phi.reshape(-1)
+    segments[0, 0, PHI:] = kept(phi).reshape(-1)
     curve._set_segments(segments, np.abs(phi).sum())
     return curve
 

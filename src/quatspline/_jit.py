@@ -112,6 +112,16 @@ def compiled(function: Callable[..., Any]) -> Any:
     return _cached(function, lambda: numba.njit(cache=True, nogil=True, **SETTINGS)(function))
 
 
+@inlined
+def whole(n):
+    """n samples rounded up to whole vectors (of 8): a loop without a remainder.
+
+    The remainder of a long loop body may be contracted otherwise than its vectors, and a sample's last
+    digits would depend on its neighbours.  BLOCK is a multiple, so that the sheet has room.
+    """
+    return (n + 7) & -8
+
+
 _compiling = threading.Lock()
 
 

@@ -55,6 +55,9 @@ INVERSE_PI = 1.0 / math.pi
 PI_HIGH = math.pi
 PI_LOW = 1.2246467991473532e-16
 
+OPPOSITE = 1e-18
+"""Antipodes have a smaller sine than this: less than one rounding of their components."""
+
 TINY = 1e-300
 """Added where a length may vanish, so that 0/0 becomes the limit."""
 
@@ -87,11 +90,14 @@ def sinc_near(z):
 
 @inlined
 def sincos(x):
-    """(sin x, cos x) for |x| up to 1e5, branch-free: x = k pi + r with |r| <= pi/2."""
+    """(sin x, cos x) to rounding for |x| up to 1e5, branch-free: x = k pi + r with |r| <= pi/2.
+
+    Beyond, as accurate as x; an x without a digit after the point (1e15) still gets one angle.
+    """
     k = (x * INVERSE_PI + ROUND) - ROUND
-    s, c = sincos_near((x - k * PI_HIGH) - k * PI_LOW)
+    s, c = sincos_near(min(max((x - k * PI_HIGH) - k * PI_LOW, -NEAR), NEAR))
     half = 0.5 * k
-    odd = half - ((half + ROUND) - ROUND)  # 0 for even k, +-1/2 for odd k
+    odd = min(abs(half - ((half + ROUND) - ROUND)), 0.5)  # 0 for even k, 1/2 for odd k
     sign = 1.0 - 8.0 * odd * odd
     return sign * s, sign * c
 
@@ -320,9 +326,12 @@ def turn(a, b, c, d, e, f, g, h):
 
 @inlined
 def slerp(a, b, c, d, e, f, g, h, u):
-    """The point at u on the great arc from (a, b, c, d) to (e, f, g, h), no sign flip."""
+    """The point at u on the great arc from (a, b, c, d) to (e, f, g, h), no sign flip.
+
+    Near antipodes it loses digits, and length: `nested.restored` gives that back.
+    """
     theta, sine, cosine = arc_angle(a, b, c, d, e, f, g, h)
     s, k = sincos(u * theta)
-    q = s / (sine + TINY)
+    q = s / max(sine, OPPOSITE if cosine < 0.0 else TINY)
     p = k - cosine * q
     return p * a + q * e, p * b + q * f, p * c + q * g, p * d + q * h

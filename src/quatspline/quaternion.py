@@ -9,6 +9,7 @@ docs/mathematics/notation.md).  Other forms of rotations are scipy's business:
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Any
 
@@ -24,6 +25,9 @@ BoolArray = NDArray[np.bool_]
 
 ANTIPODAL = 4 * float(np.finfo(float).eps)
 """Quaternions whose sum is shorter than this have no shortest arc between them."""
+
+OPPOSITE = 1e-12
+"""A vector part shorter than this, before -1, has no direction of its own."""
 
 FLIP = -4 * float(np.finfo(float).eps)
 """Neighbours with a dot product below this lie on opposite hemispheres.  Half a turn apart it is 0 but
@@ -48,6 +52,34 @@ def exp(v: ArrayLike) -> FloatArray:
 def log(q: ArrayLike) -> FloatArray:
     """Principal logarithm (..., 4) -> (..., 3), |log| <= pi; log(-1) is (pi, 0, 0) by convention."""
     return _apply(_log, (q, 4), width=3)
+
+
+def log_towards(q: ArrayLike, hint: ArrayLike) -> FloatArray:
+    """`log` of (..., 4), but of -1, which has no direction of its own, along ``hint`` (..., 3)."""
+    q = np.asarray(q, dtype=float)
+    hint = np.asarray(hint, dtype=float)
+    opposite = (q[..., 0] < 0.0) & (np.linalg.norm(q[..., 1:], axis=-1) < OPPOSITE)
+    length = np.linalg.norm(hint, axis=-1)
+    along = opposite & (length > 0.0)
+    scale = np.pi / np.where(along, length, 1.0)
+    return np.where(along[..., None], scale[..., None] * hint, log(q))
+
+
+def chart(q: ArrayLike) -> FloatArray:
+    """ln(q_0^-1 q_j) for j >= 1 of neighbours (m, ..., 4): (m - 1, ..., 3), carried on past pi.
+
+    Each point is taken on the branch nearer to the one before it plus the step between them.
+    """
+    q = np.asarray(q, dtype=float)
+    points = [np.zeros((*q.shape[1:-1], 3))]
+    for before, here in itertools.pairwise(q):
+        expected = points[-1] + log(mul(conj(before), here))
+        x = log_towards(mul(conj(q[0]), here), expected)
+        length = np.linalg.norm(x, axis=-1, keepdims=True)
+        far = x - 2.0 * np.pi * x / np.where(length > 0.0, length, 1.0)
+        nearer = np.linalg.norm(far - expected, axis=-1) < np.linalg.norm(x - expected, axis=-1)
+        points.append(np.where(nearer[..., None], far, x))
+    return np.array(points[1:])
 
 
 def power(q: ArrayLike, t: ArrayLike) -> FloatArray:

@@ -22,8 +22,11 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from quatspline._jit import compiled, inlined
 from quatspline.families.cumulative import set_base, set_factor
+from quatspline.families.tangents import chart_velocity
 from quatspline.primitives import (
     NEAR,
     between,
@@ -265,33 +268,6 @@ def write_segments(q, h, closed, clamped, sign, d, w, segments):
 
 @inlined
 def end_velocity(q, h, at_end):
-    """Chart estimate of q^-1 q' at an end of an open curve, from the last WINDOW keyframes.
-
-    v = sum of l_j'(0) ln(q_0^-1 q_j), l_j the Lagrange basis on the times since that end.
-    """
-    n, step, origin = q.shape[0], 1, 0
-    if at_end:
-        step, origin = -1, n - 1
-    count = min(WINDOW, n)
-    vx = vy = vz = 0.0
-    for j in range(1, count):
-        tj = _since(h, origin, step, j)
-        weight = 1.0 / tj
-        for k in range(1, count):
-            if k != j:
-                tk = _since(h, origin, step, k)
-                weight *= tk / (tk - tj)
-        x, y, z = log_between(*keyframe(q, origin), *keyframe(q, origin + step * j))
-        vx += weight * x
-        vy += weight * y
-        vz += weight * z
-    return vx, vy, vz
-
-
-@inlined
-def _since(h, origin, step, j):
-    """Time from the end to its j-th neighbour, negative before the last keyframe."""
-    total = 0.0
-    for k in range(j):
-        total += h[origin + k] if step > 0 else -h[origin - 1 - k]
-    return total
+    """Chart estimate of q^-1 q' at an end of an open curve, from the last WINDOW keyframes."""
+    time, x = np.empty(5), np.empty((5, 3))
+    return chart_velocity(q, h, False, 1.0, q.shape[0] - 1 if at_end else 0, WINDOW, time, x)

@@ -4,8 +4,9 @@ A circle that leaves P with unit tangent T and curvature vector c in R^4 (|c| = 
 
     p(phi) = P + X sin(phi) + Y (1 - cos(phi)),    X = r T,  Y = r^2 c,                            (1)
 
-and every segment holds two of them, each with its angle phi, a quadratic in u.  Great circles
-have r = 1; an arc that nears a point keeps its position to rounding, whatever happens to its plane.
+and every segment holds two of them, each with its angle phi = phi_0 + r u + g u (1 - u), exact at both
+ends.  Great circles have r = 1; an arc that nears a point keeps its position to rounding, whatever
+happens to its plane.
 """
 
 from __future__ import annotations
@@ -15,11 +16,11 @@ import math
 from numba import carray
 
 from quatspline._jit import BLOCK, CONSTANTS, RESULT, ROWS, compiled, inlined, sample_kernel
-from quatspline.families.nested import set_rate, slerp_jet
+from quatspline.families.nested import restored, set_rate, slerp_jet
 from quatspline.families.segments import Family
 from quatspline.primitives import sincos, slerp
 
-# notation: the constants of a circle are P, X, Y (12) and the angle's coefficients from u^0 to u^2.
+# notation: the constants of a circle are P, X, Y (12) and the angle's phi_0, r, g.
 SIZE = 15
 SPLIT = 2 * SIZE
 """A biarc's u where its second arc begins; a blend's three coefficients from u^1 to u^3."""
@@ -48,7 +49,7 @@ def unit(a):
 
 @compiled
 def set_circle(segments, i, k, p, x, y, a0, a1, a2):
-    """Circle k (0, 1) of segment i, (1), and its angle a0 + a1 u + a2 u^2."""
+    """Circle k (0, 1) of segment i, (1), and its angle a0 + a1 u + a2 u (1 - u)."""
     c = SIZE * k
     for j in range(4):
         segments[i, c + j] = p[j]
@@ -72,22 +73,23 @@ def _on(s, c, j, sine, rise):
 
 @inlined
 def _point(s, c, j, u):
-    sine, cosine = sincos((s[c + 14, j] * u + s[c + 13, j]) * u + s[c + 12, j])
+    angle = s[c + 14, j] * (u - u * u) + (s[c + 13, j] * u + s[c + 12, j])
+    sine, cosine = sincos(angle)
     return _on(s, c, j, sine, 1.0 - cosine)
 
 
 @inlined
 def _jet(s, c, j, u):
     """p, p', p'' of (1) with respect to u."""
-    a2 = s[c + 14, j]
-    angle = (a2 * u + s[c + 13, j]) * u + s[c + 12, j]
-    rate = 2.0 * a2 * u + s[c + 13, j]
+    bend = s[c + 14, j]
+    angle = bend * (u - u * u) + (s[c + 13, j] * u + s[c + 12, j])
+    rate = bend * (1.0 - 2.0 * u) + s[c + 13, j]
     sine, cosine = math.sin(angle), math.cos(angle)
     x = (s[c + 4, j], s[c + 5, j], s[c + 6, j], s[c + 7, j])
     y = (s[c + 8, j], s[c + 9, j], s[c + 10, j], s[c + 11, j])
     along, across = combine(cosine, x, sine, y), combine(-sine, x, cosine, y)
     p1 = combine(rate, along, 0.0, along)
-    return _on(s, c, j, sine, 1.0 - cosine), p1, combine(2.0 * a2, along, rate * rate, across)
+    return _on(s, c, j, sine, 1.0 - cosine), p1, combine(-2.0 * bend, along, rate * rate, across)
 
 
 @inlined
@@ -144,8 +146,8 @@ def BLEND_ORIENTATION(sheet, n):
         u = s[0, j]
         a, b = _point(s, _FIRST, j, u), _point(s, _SECOND, j, u)
         f = ((s[_SPLIT + 2, j] * u + s[_SPLIT + 1, j]) * u + s[_SPLIT, j]) * u
-        # near an exact return the plane of three points, and with it |p|, is known to few digits
-        _result(s, j, unit(slerp(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3], f)))
+        p = slerp(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3], f)
+        _result(s, j, restored(p, a))
 
 
 @compiled

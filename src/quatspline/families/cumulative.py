@@ -4,7 +4,7 @@ On a segment, with u in [0, 1],
 
     Q(u) = Q_0 exp(theta_1(u) n_1) exp(theta_2(u) n_2) exp(theta_3(u) n_3)                    (1)
 
-with unit axes n_k and polynomials theta_k of degree 5 at most.  The paper's quartic, the quintic,
+with unit axes n_k and polynomials theta_k of degree 5 at most (`quintics`).  The paper's quartic, the quintic,
 the cumulative cubic Hermite and B-spline curves all have this form.  Rates come from a scan over
 the factors, each turning what stands to its left into its own frame [kim1995general].
 """
@@ -22,7 +22,7 @@ from quatspline._jit import (
     inlined,
     sample_kernel,
 )
-from quatspline.families.quintics import bound, quintic, quintic_jet
+from quatspline.families.quintics import bound, from_powers, quintic, quintic_jet
 from quatspline.families.segments import Family
 from quatspline.primitives import (
     NEAR,
@@ -37,7 +37,7 @@ from quatspline.primitives import (
 )
 
 # notation: the constants of a segment are Q_0 (4), Q_0 n_1 (4), n_1, n_2, n_3 (9), and the six
-# coefficients of theta_1, theta_2, theta_3 from u^0 to u^5 (18).
+# constants of theta_1, theta_2, theta_3 as `quintics` has them (18).
 Q0, Q0N1, AXES, ANGLES = 0, 4, 8, 17
 SIZE = 35
 
@@ -55,18 +55,19 @@ def set_base(segments, i, w, x, y, z):
 
 @inlined
 def set_factor(segments, i, k, x, y, z, c0, c1, c2, c3, c4, c5):
-    """Factor k (0, 1, 2) of segment i: exp(f(u) v), v = (x, y, z), f given by its coefficients.
+    """Factor k (0, 1, 2) of segment i: exp(f(u) v), v = (x, y, z), f given by its powers of u.
 
     Returns a bound of the half angle over u in [0, 1].
     """
     length, nx, ny, nz = polar(x, y, z)
-    set_turn(segments, i, k, length, nx, ny, nz, c0, c1, c2, c3, c4, c5)
-    return length * bound(c0, c1, c2, c3, c4, c5)
+    f = from_powers(c0, c1, c2, c3, c4, c5)
+    set_turn(segments, i, k, length, nx, ny, nz, f[0], f[1], f[2], f[3], f[4], f[5])
+    return length * bound(f[0], f[1], f[2], f[3], f[4], f[5])
 
 
 @inlined
 def set_turn(segments, i, k, length, nx, ny, nz, c0, c1, c2, c3, c4, c5):
-    """Factor k of segment i from the length and the axis of v."""
+    """Factor k of segment i from the length and the axis of v, f in the form of `quintics`."""
     segments[i, AXES + 3 * k] = nx
     segments[i, AXES + 3 * k + 1] = ny
     segments[i, AXES + 3 * k + 2] = nz

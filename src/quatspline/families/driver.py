@@ -179,6 +179,8 @@ def _one_by_one(knots, closed, origin, slack, t, segment, u, where):
             segment = _find(knots, x, segment)
         where[j] = segment
         u[j] = (x - knots[segment]) * (1.0 / (knots[segment + 1] - knots[segment]))
+        if x >= knots[segment + 1]:  # the end of an open curve is its last keyframe, not a rounding
+            u[j] = 1.0
     return segment, wraps, INSIDE
 
 

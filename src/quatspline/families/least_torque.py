@@ -15,6 +15,7 @@ import math
 import numpy as np
 
 from quatspline._jit import CHANGE, ITERATIONS, REACH, compiled, inlined
+from quatspline.families.quintics import quintic_jet
 from quatspline.families.rotation_vector import (
     PHI,
     SIZE,
@@ -122,15 +123,12 @@ def _ends(q, x, h, i, y):
 def _residuals(y, h, scratch, r):
     """sqrt(w_g h) alpha(u_g) of a segment, r (24,)."""
     set_end_rates(scratch, 0, y)
-    f = scratch[0, PHI:].copy().reshape(3, 6)
+    f = scratch[0, PHI:].copy().reshape(3, 6).T
     p, d, e = np.empty(3), np.empty(3), np.empty(3)
     for g in range(POINTS.size):
         u = POINTS[g]
         for c in range(3):
-            p[c] = ((((f[c, 5] * u + f[c, 4]) * u + f[c, 3]) * u + f[c, 2]) * u + f[c, 1]) * u
-            d[c] = (((5 * f[c, 5] * u + 4 * f[c, 4]) * u + 3 * f[c, 3]) * u + 2 * f[c, 2]) * u
-            d[c] += f[c, 1]
-            e[c] = ((20 * f[c, 5] * u + 12 * f[c, 4]) * u + 6 * f[c, 3]) * u + 2 * f[c, 2]
+            p[c], d[c], e[c] = quintic_jet(f, 0, c, u)
         z = p[0] * p[0] + p[1] * p[1] + p[2] * p[2]
         s, c0 = sinc(z)
         a, b, a1, b1 = coefficients(z, s, c0)

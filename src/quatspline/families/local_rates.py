@@ -32,8 +32,9 @@ A9, A10, A11 = -0.0508544973794026, 0.03923165829558719, -0.01917688711906226
 
 @inlined
 def log_scale(w, l2):
-    """theta / l with theta = atan2(l, w), l^2 = l2: turns a vector part into a logarithm.
+    """theta / l and theta = atan2(l, w), l^2 = l2: turns a vector part into a logarithm.
 
+    Of -1, whose logarithm has a length but no direction, theta = pi and theta / l is finite.
     Two halvings of the angle bring it below pi/8, without a branch, so that loops vectorise.
     """
     length = math.sqrt(l2)
@@ -44,7 +45,10 @@ def log_scale(w, l2):
     p = ((((A11 * s + A10) * s + A9) * s + A8) * s + A7) * s + A6
     p = ((((p * s + A5) * s + A4) * s + A3) * s + A2) * s + A1
     scale = 4.0 * (g * (p * s) + g)
-    return math.pi / (length + TINY) - scale if w < 0.0 else scale
+    theta = length * scale
+    if w < 0.0:
+        return math.pi / (length + TINY) - scale, math.pi - theta
+    return scale, theta
 
 
 @inlined
@@ -82,11 +86,11 @@ def _logs(w, x, y, z):
     """The logarithms of (w, x, y, z) in place, their lengths for w; the loop vectorises."""
     for i in range(w.size):
         l2 = x[i] * x[i] + y[i] * y[i] + z[i] * z[i]
-        scale = log_scale(w[i], l2)
+        scale, theta = log_scale(w[i], l2)
         x[i] *= scale
         y[i] *= scale
         z[i] *= scale
-        w[i] = scale * math.sqrt(l2)
+        w[i] = theta
 
 
 @inlined

@@ -19,7 +19,7 @@ import math
 
 from numba import carray
 
-from quatspline._jit import BLOCK, CONSTANTS, RESULT, ROWS, inlined, sample_kernel
+from quatspline._jit import BLOCK, CONSTANTS, RESULT, ROWS, inlined, sample_kernel, whole
 from quatspline.families.arcs import SIZE as ARC_SIZE
 from quatspline.families.arcs import along
 from quatspline.families.segments import Family
@@ -32,6 +32,7 @@ from quatspline.primitives import (
     S6,
     S7,
     S8,
+    TINY,
     arc_angle,
     between,
     sincos,
@@ -69,6 +70,28 @@ def _arc(s, k, j, x):
     return along(s, c, j, sine, cosine)
 
 
+@inlined
+def restored(p, other):
+    """p / |p|: slerp between near-antipodes has digits to lose; the other where it has lost all."""
+    size = p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]
+    lost = not size > TINY
+    k = 1.0 / math.sqrt(1.0 if lost else size)
+    return (
+        other[0] if lost else k * p[0],
+        other[1] if lost else k * p[1],
+        other[2] if lost else k * p[2],
+        other[3] if lost else k * p[3],
+    )
+
+
+@inlined
+def _set(s, j, q):
+    s[RESULT, j] = q[0]
+    s[RESULT + 1, j] = q[1]
+    s[RESULT + 2, j] = q[2]
+    s[RESULT + 3, j] = q[3]
+
+
 @sample_kernel
 def TRIANGLE_ORIENTATION(sheet, n):
     """The triangle of slerps at u."""
@@ -81,10 +104,7 @@ def TRIANGLE_ORIENTATION(sheet, n):
         a0, a1, a2, a3 = slerp(a0, a1, a2, a3, b0, b1, b2, b3, _parameter(s, 3, j, u))
         b0, b1, b2, b3 = slerp(b0, b1, b2, b3, c0, c1, c2, c3, _parameter(s, 4, j, u))
         a0, a1, a2, a3 = slerp(a0, a1, a2, a3, b0, b1, b2, b3, _parameter(s, 5, j, u))
-        s[RESULT, j] = a0
-        s[RESULT + 1, j] = a1
-        s[RESULT + 2, j] = a2
-        s[RESULT + 3, j] = a3
+        _set(s, j, restored((a0, a1, a2, a3), _arc(s, 1, j, u)))
 
 
 @sample_kernel
@@ -95,11 +115,8 @@ def SQUAD_ORIENTATION(sheet, n):
         u = s[0, j]
         a0, a1, a2, a3 = _arc(s, 0, j, u)
         b0, b1, b2, b3 = _arc(s, 1, j, u)
-        a0, a1, a2, a3 = slerp(a0, a1, a2, a3, b0, b1, b2, b3, 2.0 * u * (1.0 - u))
-        s[RESULT, j] = a0
-        s[RESULT + 1, j] = a1
-        s[RESULT + 2, j] = a2
-        s[RESULT + 3, j] = a3
+        p = slerp(a0, a1, a2, a3, b0, b1, b2, b3, 2.0 * u * (1.0 - u))
+        _set(s, j, restored(p, (a0, a1, a2, a3)))
 
 
 @inlined
@@ -235,7 +252,7 @@ def set_rate(s, j, q, derivative, scale):
 def TRIANGLE_VELOCITY(sheet, n):
     """omega of the triangle."""
     s = carray(sheet, (ROWS, BLOCK))
-    for j in range(n):
+    for j in range(whole(n)):
         q, q1, _ = _triangle_jet(s, j)
         set_rate(s, j, q, q1, s[1, j])
 
@@ -244,7 +261,7 @@ def TRIANGLE_VELOCITY(sheet, n):
 def TRIANGLE_ACCELERATION(sheet, n):
     """alpha of the triangle."""
     s = carray(sheet, (ROWS, BLOCK))
-    for j in range(n):
+    for j in range(whole(n)):
         q, _, q2 = _triangle_jet(s, j)
         set_rate(s, j, q, q2, s[1, j] * s[1, j])
 
@@ -253,7 +270,7 @@ def TRIANGLE_ACCELERATION(sheet, n):
 def SQUAD_VELOCITY(sheet, n):
     """omega of the squad."""
     s = carray(sheet, (ROWS, BLOCK))
-    for j in range(n):
+    for j in range(whole(n)):
         q, q1, _ = _squad_jet(s, j)
         set_rate(s, j, q, q1, s[1, j])
 
@@ -262,7 +279,7 @@ def SQUAD_VELOCITY(sheet, n):
 def SQUAD_ACCELERATION(sheet, n):
     """alpha of the squad."""
     s = carray(sheet, (ROWS, BLOCK))
-    for j in range(n):
+    for j in range(whole(n)):
         q, _, q2 = _squad_jet(s, j)
         set_rate(s, j, q, q2, s[1, j] * s[1, j])
 

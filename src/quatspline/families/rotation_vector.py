@@ -27,8 +27,8 @@ from quatspline.families.quintics import hermite, quintic, quintic_jet
 from quatspline.families.segments import Family
 from quatspline.primitives import cross, mul, sinc, sinc_near
 
-# notation: the constants of a segment are Q_0 (4), then for each component of phi the coefficients
-# from u^0 to u^5 (18).
+# notation: the constants of a segment are Q_0 (4), then for each component of phi the six constants
+# of `quintics` (18).
 Q0, PHI = 0, 4
 SIZE = 22
 

@@ -18,15 +18,13 @@ import numpy as np
 
 from quatspline._jit import compiled, inlined
 from quatspline.primitives import exp, log_between, mul
+from quatspline.quaternion import OPPOSITE
 
 # notation: log units throughout (half rotation vectors); h_i = t_{i+1} - t_i,
 # L_i = ln(q_i^-1 q_{i+1})
 
 CHART, SECANT = 0.0, 1.0
 """Velocities at the ends of open data: by (1), or that of slerp on the first and last segment."""
-
-OPPOSITE = 1e-12
-"""A vector part shorter than this, before -1, has no direction of its own."""
 
 
 @inlined
@@ -85,7 +83,7 @@ def _walk(q, h, sign, i, node, stop, way, time, x):
 
 @compiled
 def chart_velocity(q, h, closed, sign, i, window, time, x):
-    """(1) at keyframe i by up to ``window`` (3 or 5) keyframes; time (5,), x (5, 3): scratch."""
+    """(1) at keyframe i by up to ``window`` (3 to 5) keyframes; time (5,), x (5, 3): scratch."""
     n = q.shape[0]
     m = window if closed else min(window, n)
     first = i - window // 2
