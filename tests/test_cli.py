@@ -17,6 +17,7 @@ import pytest
 
 import quatspline
 from quatspline import cli, experiment, registry, running
+from quatspline.grid import sample_times
 from quatspline.trajectories import files
 
 Finished = subprocess.CompletedProcess[str]
@@ -242,6 +243,25 @@ def test_bad_usage_and_bad_input_are_told_in_one_line(
     assert output.out == ""
 
 
+def test_files_that_no_reader_unpacks_are_told_in_one_line(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(desk.folder)
+    np.savez_compressed("k.npz", times=[0.0, 1.0], quaternions=[[1.0, 0, 0, 0], [0.8, 0.6, 0, 0]])
+    whole = Path("k.npz").read_bytes()
+    flags, methods = ((6, 8), b"\x01"), ((8, 10), b"\x63")
+    for (local, central), value in (flags, methods):
+        damaged = bytearray(whole)
+        for mark, offset in ((b"PK\x03\x04", local), (b"PK\x01\x02", central)):
+            for at in range(len(whole)):
+                if whole.startswith(mark, at):
+                    damaged[at + offset : at + offset + 1] = value
+        Path("k.npz").write_bytes(damaged)
+        status = cli.main(["sample", "k.npz", "--scheme", "slerp", "--count", "2"])
+        line = refused(subprocess.CompletedProcess([], status, *capsys.readouterr()))
+        assert line.startswith("quatspline: k.npz: not an NPZ file of plain arrays: it")
+
+
 def test_every_malformed_line_is_told(desk: Desk) -> None:
     desk.scheme("stairs")
     for line in ("1,1,0,0", "1,a,0,0,0", "1,nan,0,0,0", "1,2,0,0,0", "0,1,0,0,0"):
@@ -329,7 +349,56 @@ def test_sample_carries_positions_to_tum(desk: Desk) -> None:
         desk("sample", "b.csv", "--scheme", "stairs", "--count", 5, "-o", "c.txt").returncode == 0
     )
     np.testing.assert_allclose(files.read(desk.folder / "a.tum").positions[:, 0], [0, 1, 2, 3, 4])
-    np.testing.assert_array_equal(files.read(desk.folder / "c.txt").positions, np.zeros((5, 3)))
+    np.testing.assert_allclose(files.read(desk.folder / "c.txt").positions[:, 0], [0, 1, 2, 3, 4])
+
+
+def test_sample_carries_positions_in_every_format_and_names_what_it_does_not(desk: Desk) -> None:
+    desk.scheme("stairs")
+    text = "t,x,y,z,qw,qx,qy,qz,label\n0,5,6,7,1,0,0,0,a\n2,7,8,9,0.8,0.6,0,0,b\n"
+    path = desk.keyframes("k.csv", text)
+    done = desk("sample", path, "--scheme", "stairs", "--count", 3)
+    assert done.returncode == 0
+    assert done.stderr == f"quatspline: {path}: not carried: 'label'\n"
+    assert done.stdout.splitlines()[:3] == [
+        "t,qw,qx,qy,qz,tx,ty,tz",
+        "0.0,1.0,0.0,0.0,0.0,5.0,6.0,7.0",
+        "1.0,1.0,0.0,0.0,0.0,6.0,7.0,8.0",
+    ]
+    for suffix in (".tum", ".npz"):
+        out = desk.folder / f"out{suffix}"
+        assert desk("sample", path, "--scheme", "stairs", "--count", 3, "-o", out).returncode == 0
+        expected = [[5, 6, 7], [6, 7, 8], [7, 8, 9]]
+        np.testing.assert_array_equal(files.read(out).positions, expected)
+
+
+def test_sample_of_integer_stamps_is_at_whole_stamps(desk: Desk) -> None:
+    epoch = 1_650_000_000_000_000_001
+    rows = f"timestamp_ns,w,x,y,z\n{epoch},1,0,0,0\n{epoch + 100},0.8,0.6,0,0\n"
+    path = desk.keyframes("k.csv", rows)
+    done = desk("sample", path, "--scheme", "slerp", "--count", 4)
+    assert (done.returncode, done.stderr) == (0, "")
+    _, *lines = (line.split(",") for line in done.stdout.splitlines())
+    assert [int(t) - epoch for t, *_ in lines] == [0, 33, 67, 100]
+    half = np.arccos(0.8)
+    expected = [np.cos(half * share) for share in (0, 0.33, 0.67, 1)]
+    np.testing.assert_allclose([float(w) for _, w, *_ in lines], expected, atol=1e-14)
+    done = desk("sample", path, "--scheme", "slerp", "--rate", 0.03, "-o", "out.npz")
+    times = files.read(desk.folder / "out.npz").times
+    assert times.dtype == np.int64
+    assert (times - epoch).tolist() == [0, 33, 67, 100]
+
+
+def test_sample_tells_which_reading_of_a_closed_motion_was_taken(desk: Desk) -> None:
+    desk.scheme("stairs")
+    rows = "0,1,0,0,0\n1,0.8,0.6,0,0\n2,0.6,0.8,0,0\n3,0.999999995,0.0001,0,0\n"
+    path = desk.keyframes("k.csv", rows)
+    done = desk("sample", path, "--scheme", "stairs", "--rate", 1, "--closed")
+    assert done.returncode == 0
+    assert done.stdout.splitlines()[-1] == "4.0,1.0,0.0,0.0,0.0"
+    assert done.stderr == (
+        f"quatspline: {path}: closed: the last row is 0.011 degrees from the first orientation: taken "
+        "as a keyframe of its own, the return follows one step later\n"
+    )
 
 
 def test_sample_of_a_closed_curve_returns(desk: Desk) -> None:
@@ -370,14 +439,14 @@ def test_what_nobody_foresaw_is_status_1_with_its_traceback(desk: Desk) -> None:
 def test_rate_samples_from_the_start_to_the_end_where_it_lands(
     first: float, last: float, rate: float, expected: np.ndarray
 ) -> None:
-    times = cli._grid(first, last, rate, None)
+    times = sample_times(first, last, rate, None)
     np.testing.assert_allclose(times, expected, rtol=0, atol=4 * np.spacing(abs(first) + 1.0))
     assert times.max() <= last
 
 
 def test_count_samples_both_ends() -> None:
-    np.testing.assert_array_equal(cli._grid(2.0, 4.0, None, 3), [2, 3, 4])
-    np.testing.assert_array_equal(cli._grid(2.0, 4.0, None, 1), [2])
+    np.testing.assert_array_equal(sample_times(2.0, 4.0, None, 3), [2, 3, 4])
+    np.testing.assert_array_equal(sample_times(2.0, 4.0, None, 1), [2])
 
 
 # -- run ----------------------------------------------------------------------------------------

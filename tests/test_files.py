@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from quatspline.trajectories import files
-from quatspline.trajectories.files import KeyframeFileError, Motion, read, write
+from quatspline.trajectories.files import KeyframeFileError, Motion, read, write, writing
 
 TIMES = np.array([0.0, 0.1, 1.0 / 3.0, 1305031102.175800085])
 QUATERNIONS = np.array([[1, 0, 0, 0], [0.8, 0.6, 0, 0], [0.6, 0, -0.8, 0], [0.5, 0.5, 0.5, -0.5]])
@@ -44,11 +45,11 @@ def test_what_is_written_is_read_back_exactly(
     motion = read(path)
     np.testing.assert_array_equal(motion.times, TIMES)
     np.testing.assert_array_equal(motion.quaternions, QUATERNIONS)
-    if suffix.lower() in (".tum", ".txt"):
+    if positions is None and suffix.lower() not in (".tum", ".txt"):
+        assert motion.positions is None
+    else:
         expected = np.zeros((4, 3)) if positions is None else positions
         np.testing.assert_array_equal(motion.positions, expected)
-    else:
-        assert motion.positions is None
     assert os.listdir(tmp_path) == [path.name]
 
 
@@ -62,14 +63,15 @@ def test_csv_header_names_columns_in_any_order_among_others(tmp_path: Path) -> N
     text = (
         "\ufeff# a comment\n\n"
         '"qz", x, QX ,y,label,qy,z,T,qw\n'
-        "0,9,0.6,9,start,0,9,-1.5,0.8\n"
+        "0,9,0.6,8,start,0,7,-1.5,0.8\n"
         "  # another\n"
-        "0,9,0,9,,0.8,9,2e0,0.6\n"
+        "0,6,0,5,,0.8,4,2e0,0.6\n"
     )
     motion = read(put(tmp_path, "k.csv", text))
     np.testing.assert_array_equal(motion.times, [-1.5, 2])
     np.testing.assert_array_equal(motion.quaternions, [[0.8, 0.6, 0, 0], [0.6, 0, 0.8, 0]])
-    assert motion.positions is None
+    np.testing.assert_array_equal(motion.positions, [[9, 8, 7], [6, 5, 4]])
+    assert motion.unread == ("label",)
 
 
 def test_tum_is_scalar_last_with_positions(tmp_path: Path) -> None:
@@ -89,16 +91,16 @@ def test_a_norm_within_the_tolerance_is_read_as_given(tmp_path: Path) -> None:
 LINES = {
     "few fields": ("2,1,0,0", "expected 5 fields, found 4"),
     "many fields": ("2,1,0,0,0,0", "expected 5 fields, found 6"),
-    "text": ("2,1,0,none,0", "qy = 'none' is not a number"),
-    "empty field": ("2,1,0,,0", "qy = '' is not a number"),
+    "text": ("2,1,0,east,0", "qy = 'east' is not a number"),
+    "empty field": ("2,1,0,,0", "qy holds no number (blank or nan)"),
     "underscore": ("2,1,0,0_0,0", "qy = '0_0' is not a number"),
-    "nan": ("2,1,0,nan,0", "qy = nan is not a finite number"),
-    "nan time": ("NaN,1,0,0,0", "t = NaN is not a finite number"),
-    "infinity": ("1e999,1,0,0,0", "t = 1e999 is not a finite number"),
+    "nan": ("2,1,0,nan,0", "qy holds no number (blank or nan)"),
+    "nan time": ("NaN,1,0,0,0", "t holds no number (blank or nan)"),
+    "infinity": ("1e999,1,0,0,0", "t = inf is not a finite number"),
     "norm": ("2,1,0,0.1,0", "quaternion has norm 1.00499"),
     "zero": ("2,0,0,0,0", "quaternion has norm 0"),
-    "equal time": ("1,1,0,0,0", "t = 1.0 does not exceed 1.0"),
-    "earlier time": ("0.5,1,0,0,0", "t = 0.5 does not exceed 1.0"),
+    "equal time": ("1,1,0,0,0", "t = 1.0 repeats the stamp before it (1 row)"),
+    "earlier time": ("0.5,1,0,0,0", "t = 0.5 goes back behind 1.0 before it (1 row)"),
 }
 
 
@@ -116,22 +118,21 @@ def test_tum_names_the_malformed_line(tmp_path: Path, line: str, what: str) -> N
     fields = " ".join([t, "0 0 0", *q[1:], q[0]])
     good = "0 7 7 7 0 0 0 1\n# comment\n1 7 7 7 0.6 0 0 0.8\n"
     message = refusal(put(tmp_path, "k.tum", f"{good}{fields}\n"))
-    if "fields" in what or "''" in what:  # blanks separate: an empty field is no field
+    if "fields" in what or ",," in line:  # blanks separate: an empty field is no field
         what = f"expected 8 fields, found {len(fields.split())}"
     assert message.startswith(f", line 4: {what}")
 
 
 def test_tum_refuses_a_position_that_is_no_number(tmp_path: Path) -> None:
-    assert (
-        refusal(put(tmp_path, "k.tum", "0 1 x 3 0 0 0 1")) == ", line 1: ty = 'x' is not a number"
-    )
+    message = refusal(put(tmp_path, "k.tum", "0 1 x 3 0 0 0 1"))
+    assert message == ", line 1: ty = 'x' is not a number (1 row)"
 
 
 @pytest.mark.parametrize("row", [0, 1, 2])
 @pytest.mark.parametrize(
     ("time", "quaternion", "what"),
     [
-        (np.nan, [1, 0, 0, 0], "t = nan is not a finite number"),
+        (np.nan, [1, 0, 0, 0], "t holds no number (blank or nan)"),
         (5.0, [np.inf, 0, 0, 0], "qw = inf is not a finite number"),
         (5.0, [0.5, 0, 0, 0], "quaternion has norm 0.5"),
     ],
@@ -149,7 +150,8 @@ def test_npz_names_the_row(
 def test_npz_names_the_row_whose_time_does_not_increase(tmp_path: Path, times: list[float]) -> None:
     np.savez(tmp_path / "k.npz", times=times, quaternions=np.tile([1.0, 0, 0, 0], (3, 1)))
     message = refusal(tmp_path / "k.npz")
-    assert message == f", row 2: t = {float(times[2])} does not exceed 1.0 before it"
+    what = "repeats the stamp" if times[2] == 1 else "goes back behind 1.0"
+    assert message == f", row 2: t = {float(times[2])} {what} before it (1 row)"
 
 
 @pytest.mark.parametrize("last", [3.0, 2.0, np.nan, np.inf])
@@ -162,7 +164,7 @@ def test_npz_of_a_closed_motion_has_one_time_more(tmp_path: Path, last: float) -
         assert (motion.times.shape, motion.quaternions.shape) == ((4,), (3, 4))
         assert motion.returning() is motion
     else:
-        assert refusal(path).startswith(", row 3: t = ")
+        assert refusal(path).startswith(", row 3: t ")
 
 
 @pytest.mark.parametrize(
@@ -199,24 +201,9 @@ def test_npz_refuses_a_bare_array(tmp_path: Path) -> None:
     assert refusal(tmp_path / "k.npz") == ": not an NPZ file of plain arrays"
 
 
-@pytest.mark.parametrize(
-    ("header", "what"),
-    [
-        ("t,qw,qx,qy", "no column 'qz' in the header: did you mean 'qy'?"),
-        ("time,qw,qx,qy,qz", "no column 't' in the header: known: "),
-        ("t,w,x,y,z", "no column 'qw' in the header: did you mean 'w'?"),
-        ("a,b,c,d,e", "no column 't' in the header"),
-        ("t,qw,qx,qy,qz,qw", "two columns 'qw' in the header"),
-    ],
-)
-def test_csv_refuses_a_header_without_the_columns(tmp_path: Path, header: str, what: str) -> None:
-    message = refusal(put(tmp_path, "k.csv", f"# first\n{header}\n0,1,0,0,0\n"))
-    assert message.startswith(f", line 2: {what}")
-
-
 def test_a_header_comes_first_only(tmp_path: Path) -> None:
     message = refusal(put(tmp_path, "k.csv", "0,1,0,0,0\nt,qw,qx,qy,qz\n"))
-    assert message == ", line 2: t = 't' is not a number"
+    assert message == ", line 2: t = 't' is not a number (1 row)"
 
 
 @pytest.mark.parametrize("name", ["k.csv", "k.tum"])
@@ -237,6 +224,98 @@ def test_missing_file_folder_binary_and_suffix_are_refused(tmp_path: Path) -> No
     assert refusal(tmp_path / "k.tum") == ": not a text file in UTF-8"
     assert "unknown suffix '.cvs': did you mean '.csv'?" in refusal(tmp_path / "k.cvs")
     assert "unknown suffix ''" in refusal(tmp_path / "k")
+
+
+@pytest.mark.parametrize("name", ["k.csv", "k.txt"])
+def test_faults_are_counted_by_kind(tmp_path: Path, name: str) -> None:
+    rows = ["0", "1", "1", "1", "nan", "3", "2", "4", "4", "5", "1e999"]
+    good, tail = ("1,0,0,0", "2,0,0,0") if name == "k.csv" else ("0 0 0 0 0 0 1", "0 0 0 0 0 0 2")
+    separator = "," if name == "k.csv" else " "
+    text = "".join(f"{t}{separator}{good}\n" for t in rows) + f"6{separator}{tail}\n"
+    assert refusal(put(tmp_path, name, f"# made up\n\n{text}")) == (
+        ", line 5: t = 1.0 repeats the stamp before it (the first of 3 rows); "
+        "line 7: t holds no number (blank or nan) (1 row); "
+        "line 9: t = 2.0 goes back behind 3.0 before it (1 row); "
+        "line 13: t = inf is not a finite number (1 row); "
+        "line 14: quaternion has norm 2, not 1 (within 0.001) (1 row)"
+    )
+
+
+@pytest.mark.parametrize("blank", [",,,,", "1.5,,,,", "1.5,nan,0,0,0", "1.5,1,0,NA,0", ", , ,,"])
+def test_blank_rows_are_counted(tmp_path: Path, blank: str) -> None:
+    text = f"0,1,0,0,0\n{blank}\n2,1,0,0,0\n{blank}\n{blank}\n3,1,0,0,0\n"
+    message = refusal(put(tmp_path, "k.csv", text))
+    assert message.startswith(", line 2: ")
+    assert message.endswith(" holds no number (blank or nan) (the first of 3 rows)")
+    assert "; " not in message  # gaps hide no fault and make none
+
+
+def test_npz_faults_are_counted(tmp_path: Path) -> None:
+    q = np.tile([1.0, 0, 0, 0], (6, 1))
+    q[4:, 2] = np.nan
+    np.savez(tmp_path / "k.npz", times=[0, 1, 1, 1, 2, 3], quaternions=q)
+    assert refusal(tmp_path / "k.npz") == (
+        ", row 2: t = 1.0 repeats the stamp before it (the first of 2 rows); "
+        "row 4: qy holds no number (blank or nan) (the first of 2 rows)"
+    )
+
+
+# -- stamps -------------------------------------------------------------------------------------
+
+EPOCH = 1_650_000_000_000_000_001
+STAMPS = [EPOCH, EPOCH + 100, EPOCH + 300]
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".tum", ".npz"])
+def test_integer_stamps_stay_integers(tmp_path: Path, suffix: str) -> None:
+    given = Motion(np.array(STAMPS), QUATERNIONS[:3], POSITIONS[:3])
+    write(tmp_path / f"k{suffix}", given)
+    motion = read(tmp_path / f"k{suffix}")
+    assert motion.times.dtype == np.int64
+    assert motion.times.tolist() == STAMPS
+
+
+@pytest.mark.parametrize("spelled", ["{}", "+{}", "{}.0", "{}.000", "{}e0", '"{}"'])
+def test_stamps_are_exact_however_they_are_spelled(tmp_path: Path, spelled: str) -> None:
+    text = "".join(f"{spelled.format(t)},1,0,0,0\n" for t in STAMPS)
+    times = read(put(tmp_path, "k.csv", text)).times
+    assert (times.dtype, times.tolist()) == (np.int64, STAMPS)
+
+
+def test_other_times_are_floats(tmp_path: Path) -> None:
+    for times in (["0", "1"], ["9007199254740992", "1e300"], ["0.5", "1650000000000000000"]):
+        text = "".join(f"{t},1,0,0,0\n" for t in times)
+        motion = read(put(tmp_path, "k.csv", text))
+        np.testing.assert_array_equal(motion.times, list(map(float, times)))
+        assert motion.times.dtype == float
+
+
+@pytest.mark.parametrize("kind", [np.int32, np.int64, np.uint64, np.float32, np.float16])
+def test_npz_takes_numbers_of_any_kind(tmp_path: Path, kind: type) -> None:
+    q = np.array([[1, 0, 0, 0], [0, 1, 0, 0]])
+    np.savez(tmp_path / "k.npz", times=np.array([3, 5], kind), quaternions=q.astype(kind))
+    motion = read(tmp_path / "k.npz")
+    assert (motion.times.dtype, motion.quaternions.dtype) == (float, float)
+    np.testing.assert_array_equal(motion.times, [3, 5])
+    np.testing.assert_array_equal(motion.quaternions, q)
+
+
+def test_stamps_beyond_64_bits_are_refused(tmp_path: Path) -> None:
+    text = f"{2**63 - 1},1,0,0,0\n{2**63},1,0,0,0\n"
+    message = refusal(put(tmp_path, "k.csv", text))
+    assert message == f", line 2: t = {2**63} does not fit into 64 bits"
+    times = np.array([1, 2**63], np.uint64)
+    np.savez(tmp_path / "k.npz", times=times, quaternions=QUATERNIONS[:2])
+    assert f"times[1] = {2**63}: beyond the range of int64" in refusal(tmp_path / "k.npz")
+
+
+def test_stamps_that_float64_does_not_tell_apart_are_not_called_equal(tmp_path: Path) -> None:
+    text = "1650000000.00000001,1,0,0,0\n1650000000.00000002,1,0,0,0\n"
+    message = refusal(put(tmp_path, "k.csv", text))
+    assert "float64 does not tell them apart" in message
+    assert "repeats" not in message
+    text = "1650000000.5,1,0,0,0\n1650000000.50,1,0,0,0\n"
+    assert "repeats the stamp before it" in refusal(put(tmp_path, "k.csv", text))
 
 
 # -- writing ------------------------------------------------------------------------------------
@@ -276,7 +355,7 @@ def test_a_file_that_cannot_be_written_is_named(tmp_path: Path) -> None:
 
 
 def test_blocks_of_rows_join(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(files, "BLOCK", 3)
+    monkeypatch.setattr(writing, "BLOCK", 3)
     write(tmp_path / "k.csv", Motion(TIMES, QUATERNIONS))
     np.testing.assert_array_equal(read(tmp_path / "k.csv").times, TIMES)
 
@@ -289,6 +368,14 @@ def test_positions_follow_linearly() -> None:
     sampled = motion.sampled(np.array([1e9, 1e9 + 0.5, 1e9 + 2]), QUATERNIONS[:3])
     np.testing.assert_allclose(sampled.positions, [[0, 1, 2], [1, 1, 1.5], [4, 1, 0]], atol=1e-15)
     assert Motion(TIMES, QUATERNIONS).sampled(TIMES, QUATERNIONS).positions is None
+
+
+def test_positions_follow_integer_stamps_exactly() -> None:
+    motion = Motion(
+        np.array(STAMPS), QUATERNIONS[:3], np.array([[0.0, 0, 0], [1, 0, 0], [3, 0, 0]])
+    )
+    sampled = motion.sampled(np.array([EPOCH, EPOCH + 150, EPOCH + 201]), QUATERNIONS[:3])
+    np.testing.assert_array_equal(sampled.positions[:, 0], [0, 1.5, 2.01])
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
@@ -310,6 +397,89 @@ def test_uniform_times_return_after_one_more_step() -> None:
     np.testing.assert_array_equal(closed.positions[-1], POSITIONS[0])
 
 
+def test_a_last_row_near_the_first_is_told_apart(tmp_path: Path) -> None:
+    half = 0.5e-4
+    nearly = [np.cos(half), np.sin(half), 0, 0]
+    q = np.array([QUATERNIONS[0], QUATERNIONS[1], QUATERNIONS[2], nearly])
+    closed = Motion(np.arange(4.0), q).returning()
+    assert closed.note == (
+        "closed: the last row is 0.0057 degrees from the first orientation: taken as a keyframe of its "
+        "own, the return follows one step later"
+    )
+    assert (len(closed.times), len(closed.quaternions)) == (5, 4)
+    with pytest.raises(ValueError, match=r"its return; the last row is 0\.0057 degrees from"):
+        Motion(np.array([0.0, 1, 2, 5]), q).returning()
+
+
+def test_small_steps_are_not_taken_for_a_return() -> None:
+    angles = np.radians([0.0, 0.5, 1.0, 0.5]) / 2
+    q = np.stack([np.cos(angles), np.sin(angles), 0 * angles, 0 * angles], axis=1)
+    assert Motion(np.arange(4.0), q).returning().note == ""
+    assert Motion(np.arange(3.0), QUATERNIONS[:3]).returning().note == ""
+
+
+def test_a_rounded_return_is_the_return() -> None:
+    q = np.array([[0.71, 0, 0, 0.7099], [0.8, 0.6, 0, 0], [0.71, 0, 0, 0.7099]]) / 1.004
+    q[2] *= 1.0005
+    assert len(Motion(np.array([0.0, 1, 5]), q).returning().quaternions) == 2
+
+
+def test_integer_stamps_return_after_one_more_step() -> None:
+    closed = Motion(np.array([EPOCH, EPOCH + 10, EPOCH + 20]), QUATERNIONS[:3]).returning()
+    assert closed.times.dtype == np.int64
+    assert closed.times[-1] == EPOCH + 30
+    with pytest.raises(ValueError, match="beyond 64-bit integers"):
+        Motion(np.array([2**63 - 2, 2**63 - 1]), QUATERNIONS[:2]).returning()
+
+
 def test_uneven_times_without_a_return_are_refused() -> None:
     with pytest.raises(ValueError, match="the last row must repeat the first orientation"):
         Motion(TIMES, QUATERNIONS).returning()
+
+
+# -- whatever else comes ------------------------------------------------------------------------
+
+SEEDS = [
+    "t,qw,qx,qy,qz\n0,1,0,0,0\n1,0.8,0.6,0,0\n",
+    "# timestamp tx ty tz qx qy qz qw\n0 1 2 3 0 0 0 1\n1 1 2 3 0.6 0 0 0.8\n",
+    "#timestamp [ns],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []\n1650000000000000000,1,0,0,0\n",
+    '"t";"qw";"qx";"qy";"qz"\n0;1;0;0;0\n1;0,8;0,6;0;0\n',
+]
+TOKENS = [*"\n\r\t,; #\"'[]()|%:_.-tw\0\x1c\x85é٣", "nan", "1e999", "1_0", "qw", "0x1", "9" * 5000]
+TOKENS += ["1e18", "1e-99999999999999999999", "\ufeff"]
+
+
+def check_or_told(path: Path) -> str:
+    """The refusal of a file, or "" where what is read holds together."""
+    try:
+        times = read(path).times
+    except KeyframeFileError as error:
+        return str(error)
+    assert np.all(times[1:] > times[:-1])
+    return ""
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_any_text_is_read_or_refused_in_a_sentence(tmp_path: Path, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    for _ in range(100):
+        text = list(rng.choice(SEEDS))
+        for _ in range(rng.integers(1, 6)):
+            at = rng.integers(len(text) + 1)
+            text[at : at + rng.integers(0, 3)] = [] if rng.random() < 0.3 else rng.choice(TOKENS)
+        path = put(tmp_path, str(rng.choice(["k.csv", "k.txt"])), "".join(text))
+        told = check_or_told(path)
+        assert "\n" not in told
+        assert not told or told.startswith(str(path))
+
+
+@pytest.mark.parametrize("compress", [np.savez, np.savez_compressed])
+def test_any_bytes_are_read_or_refused_in_a_sentence(tmp_path: Path, compress: Any) -> None:
+    rng, path = np.random.default_rng(0), tmp_path / "k.npz"
+    compress(path, times=[0.0, 1.0], quaternions=[[1.0, 0, 0, 0], [0.8, 0.6, 0, 0]])
+    whole = np.frombuffer(path.read_bytes(), np.uint8)
+    for _ in range(200):
+        damaged = whole.copy()
+        damaged[rng.integers(len(whole), size=rng.integers(1, 4))] = rng.integers(256)
+        path.write_bytes(damaged.tobytes())
+        assert "\n" not in check_or_told(path)

@@ -20,13 +20,10 @@ from quatspline import __version__
 
 if TYPE_CHECKING:
     from quatspline.registry import Found
-    from quatspline.trajectories.files import FloatArray, Motion
+    from quatspline.trajectories.files import Motion
 
 DONE, FAILED, REFUSED, INTERRUPTED = 0, 1, 2, 130
 
-
-MOST_SAMPLES = 50_000_000
-"""More samples than this are a slip of the unit, and would not fit into memory."""
 
 CLAIMS: tuple[tuple[str, Callable[[Any], Any]], ...] = (
     ("C^k", lambda s: f"C{s.continuity}"),
@@ -66,8 +63,12 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _told(line: str, status: int) -> int:
-    print(f"quatspline: {' '.join(line.split())}", file=sys.stderr)
+    _note(line)
     return status
+
+
+def _note(line: str) -> None:
+    print(f"quatspline: {' '.join(line.split())}", file=sys.stderr)
 
 
 def _unforeseen(error: Exception) -> int:
@@ -154,7 +155,10 @@ def _add_report(commands: Any) -> None:
 
 
 def _add_keyframes(parser: argparse.ArgumentParser) -> None:
-    kinds = "CSV (t,qw,qx,qy,qz), TUM (t tx ty tz qx qy qz qw) or NPZ (times, quaternions)"
+    kinds = (
+        "CSV (t,qw,qx,qy,qz, or columns named in a header), TUM (t tx ty tz qx qy qz qw) or NPZ "
+        "(times, quaternions, positions)"
+    )
     parser.add_argument("keyframes", metavar="KEYFRAMES", help=kinds)
     closing = "a closed curve: the last row repeats the first orientation, or times are uniform"
     parser.add_argument("--closed", action="store_true", help=closing)
@@ -259,6 +263,7 @@ def _report(arguments: argparse.Namespace) -> int:
 
 def _sample(arguments: argparse.Namespace) -> int:
     from quatspline import registry
+    from quatspline.grid import sample_times
     from quatspline.trajectories import files
 
     registry.scheme(arguments.scheme)  # a wrong name is told before a long file is read
@@ -269,8 +274,10 @@ def _sample(arguments: argparse.Namespace) -> int:
         curve = registry.build(
             arguments.scheme, motion.times, motion.quaternions, closed=arguments.closed
         )
-    times = _grid(*curve.domain, arguments.rate, arguments.count)
+    times = sample_times(*curve.domain, arguments.rate, arguments.count)
     samples = motion.sampled(times, curve(times))
+    if motion.unread:
+        _note(f"{arguments.keyframes}: not carried: {', '.join(map(repr, motion.unread))}")
     if arguments.file is None:
         files.write_csv(sys.stdout, samples)
     else:
@@ -286,6 +293,8 @@ def _motion(arguments: argparse.Namespace) -> Motion:
     with _naming(arguments.keyframes):
         motion = motion.returning() if arguments.closed else motion
         prepare(motion.times, motion.quaternions, closed=arguments.closed)
+    if motion.note:
+        _note(f"{arguments.keyframes}: {motion.note}")
     return motion
 
 
@@ -296,17 +305,3 @@ def _naming(path: str) -> Iterator[None]:
         yield
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from error
-
-
-def _grid(first: float, last: float, rate: float | None, count: int | None) -> FloatArray:
-    """Sample times: first + k/rate within the domain, or count of them from first to last."""
-    import numpy as np
-
-    # A step that lands on the end but for the rounding of the times belongs to the grid.
-    slack = 4.0 * float(np.spacing(max(abs(first), abs(last))))
-    steps = (last - first + slack) * rate if rate is not None else (count or 1) - 1
-    if steps >= MOST_SAMPLES:
-        raise ValueError(f"{steps + 1:.6g} samples are too many: at most {MOST_SAMPLES:,}")
-    if rate is None:
-        return np.linspace(first, last, int(steps) + 1)
-    return np.minimum(first + np.arange(int(steps) + 1) / rate, last)

@@ -1,0 +1,272 @@
+"""Columns of keyframe files: names in the spellings of many tools, separators, what contradicts itself."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from quatspline.trajectories.files import KeyframeFileError, Motion, read
+
+ROWS = np.array([[0.0, 1, 2, 3, 0.8, 0.6, 0, 0], [1.0, 4, 5, 6, 0.36, 0.48, 0.64, 0.48]])
+"""Times, positions, w, x, y, z: no two columns alike, so that none can be swapped unseen."""
+
+PARTS = dict(zip("txyzWXYZ", ROWS.T, strict=True))
+
+
+def table(order: str, separator: str = ",", comma: bool = False) -> str:
+    """Rows with columns in the order of letters: t, x, y, z, and W, X, Y, Z of the quaternion."""
+    rows = zip(*(PARTS[letter].tolist() for letter in order), strict=True)
+    lines = [separator.join(f"{value:g}" for value in row) for row in rows]
+    text = "\n".join(lines) + "\n"
+    return text.replace(".", ",") if comma else text
+
+
+def put(folder: Path, text: str, name: str = "k.csv") -> Motion:
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return read(path)
+
+
+def check(motion: Motion, positions: bool) -> None:
+    np.testing.assert_array_equal(motion.times, ROWS[:, 0])
+    np.testing.assert_array_equal(motion.quaternions, ROWS[:, 4:])
+    if positions:
+        np.testing.assert_array_equal(motion.positions, ROWS[:, 1:4])
+    else:
+        assert motion.positions is None
+
+
+def refusal(folder: Path, text: str, name: str = "k.csv") -> str:
+    with pytest.raises(KeyframeFileError) as caught:
+        put(folder, text, name)
+    message = str(caught.value)
+    assert "\n" not in message
+    assert message.startswith(str(folder / name))
+    return message.removeprefix(str(folder / name))
+
+
+# -- spellings ----------------------------------------------------------------------------------
+
+SPELLINGS = [
+    ("t,qx,qy,qz,qw", "tXYZW"),
+    ("time,x,y,z,w", "tXYZW"),
+    ("t,x,y,z,qw,qx,qy,qz", "txyzWXYZ"),
+    ("w,x,y,z,Time [s],px,py,pz", "WXYZtxyz"),
+    ("timestamp_ns,orientation.x,orientation.y,orientation.z,orientation.w", "tXYZW"),
+    ("Timestamp,Q_W,Q_X,Q_Y,Q_Z", "tWXYZ"),
+    ("time (s),quatW,quatX,quatY,quatZ", "tWXYZ"),
+    ("TIME_STAMP,quat_w,quat_x,quat_y,quat_z,pos_x,pos_y,pos_z", "tWXYZxyz"),
+    (
+        "t,rotation.w,rotation.x,rotation.y,rotation.z,translation.x,translation.y,translation.z",
+        "tWXYZxyz",
+    ),
+    ("t,p_x [m],p_y [m],p_z [m],q[w],q[x],q[y],q[z]", "txyzWXYZ"),
+    (
+        "timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],"
+        "q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []",
+        "txyzWXYZ",
+    ),
+    ("t,tx_m,ty_m,tz_m,pelvis_qx,pelvis_qy,pelvis_qz,pelvis_qw", "txyzXYZW"),
+    ("head_z,head_y,head_x,head_w,t", "ZYXWt"),
+    (
+        "%time,field.pose.position.x,field.pose.position.y,field.pose.position.z,"
+        "field.pose.orientation.x,field.pose.orientation.y,field.pose.orientation.z,"
+        "field.pose.orientation.w",
+        "txyzXYZW",
+    ),
+    (
+        "header.stamp,pose.pose.position.x,pose.pose.position.y,pose.pose.position.z,"
+        "pose.pose.orientation.w,pose.pose.orientation.x,pose.pose.orientation.y,"
+        "pose.pose.orientation.z",
+        "txyzWXYZ",
+    ),
+]
+
+
+@pytest.mark.parametrize("mark", ["", "#", "# ", "## columns: "])
+@pytest.mark.parametrize("name", ["k.csv", "k.txt"])
+@pytest.mark.parametrize(("header", "order"), SPELLINGS)
+def test_columns_are_found_by_name(
+    tmp_path: Path, header: str, order: str, name: str, mark: str
+) -> None:
+    check(put(tmp_path, f"{mark}{header}\n{table(order)}", name), "x" in order)
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t", " ", ", ", "; ", "  ", " \t ", "|"])
+@pytest.mark.parametrize("name", ["k.csv", "k.tum"])
+def test_fields_are_separated_by_what_separates_them(
+    tmp_path: Path, separator: str, name: str
+) -> None:
+    order = "tWXYZ" if name == "k.csv" else "txyzXYZW"
+    check(put(tmp_path, table(order, separator), name), name == "k.tum")
+    header = separator.join(["time", "q_z", "q_y", "q_x", "q_w"])
+    check(put(tmp_path, f"{header}\n{table('tZYXW', separator)}", name), False)
+    check(put(tmp_path, f"# {header}\n{table('tZYXW', separator)}", name), False)
+
+
+@pytest.mark.parametrize("separator", [";", "\t", " ", "; ", "|"])
+@pytest.mark.parametrize("header", ["", "time{0}qw{0}qx{0}qy{0}qz\n"])
+def test_decimal_commas(tmp_path: Path, separator: str, header: str) -> None:
+    text = header.format(separator) + table("tWXYZ", separator, comma=True)
+    check(put(tmp_path, text), False)
+
+
+def test_quoted_fields(tmp_path: Path) -> None:
+    text = (
+        '"t","label","qw","qx","qy","qz"\n'
+        '"0","a, ""b""","0.8","0.6","0","0"\n'
+        '1,"two\nlines",0.36,"0.48",0.64,0.48\n'
+    )
+    check(put(tmp_path, text), False)
+    check(put(tmp_path, '"0,0" "0,8" "0,6" 0 0\n"1" "0,36" "0,48" "0,64" "0,48"\n'), False)
+    check(put(tmp_path, '"0,0","0,8","0,6",0,0\n"1","0,36","0,48","0,64","0,48"\n'), False)
+
+
+def test_names_with_blanks_between_tabs(tmp_path: Path) -> None:
+    check(put(tmp_path, f"time stamp\tq w\tq x\tq y\tq z\n{table('tWXYZ', chr(9))}"), False)
+
+
+# -- headers and comments -----------------------------------------------------------------------
+
+
+def test_a_header_may_be_separated_otherwise_than_rows(tmp_path: Path) -> None:
+    check(put(tmp_path, f"# timestamp tx ty tz qw qx qy qz\n{table('txyzWXYZ')}", "k.txt"), True)
+    check(put(tmp_path, f"#t,qz,qy,qx,qw\n{table('tZYXW', ' ')}"), False)
+
+
+@pytest.mark.parametrize(
+    "comment",
+    [
+        "",
+        "#",
+        "#,,",
+        "recorded on a Tuesday, x forward, y left, z up",
+        "file: 'rgbd_dataset_freiburg1_xyz.bag'",
+        "time in seconds, quaternion scalar first",
+        "t and w",
+        "a b c d e",
+        "1,2,3,4,5",
+        "quaternions: w x y z",
+        "w, x, y, z",
+    ],
+)
+def test_prose_stays_a_comment(tmp_path: Path, comment: str) -> None:
+    check(put(tmp_path, f"# {comment}\n{table('tWXYZ')}"), False)
+
+
+def test_comments_among_the_data_are_no_header(tmp_path: Path) -> None:
+    first, second = table("tWXYZ").splitlines()
+    check(put(tmp_path, f"{first}\n# t,qx,qy,qz,qw\n{second}\n"), False)
+
+
+def test_a_comment_and_a_header_that_agree(tmp_path: Path) -> None:
+    names = "t,qx,qy,qz,qw"
+    check(put(tmp_path, f"# made up\n# {names}\n{names}\n{table('tXYZW')}"), False)
+
+
+def test_names_among_prose_are_honoured(tmp_path: Path) -> None:
+    check(put(tmp_path, f"# columns are t qx qy qz qw\n{table('tXYZW', ' ')}"), False)
+
+
+def test_positions_and_other_columns_are_told_apart(tmp_path: Path) -> None:
+    header = "t,tx,ty,tz,w,x,y,z,v_x [m/s],v_y [m/s],label"
+    text = "".join(f"{line},7,8,a\n" for line in table("txyzWXYZ").splitlines())
+    motion = put(tmp_path, f"{header}\n{text}")
+    check(motion, True)
+    assert motion.unread == ("v_x [m/s]", "v_y [m/s]", "label")
+
+
+CONTRADICTIONS = {
+    "w twice": ("t,qw,qx,qy,qz,qw", "'qw', 'qw': two columns of one name"),
+    "two spellings": ("t,qw,q_w,qx,qy,qz", "'qw', 'q_w': two columns of one name"),
+    "two quaternions": ("t,w,x,y,z,qw,qx,qy,qz", "'w', 'qw': more than one column may be the"),
+    "two bodies": ("t,a_qw,a_qx,a_qy,a_qz,b_qw,b_qx,b_qy,b_qz", "'a_qw', 'b_qw': more than one"),
+    "half of another": ("t,x,y,z,w,qx,qy,qz", "'x', 'qx': more than one column may be"),
+    "lone w": ("t,qw,qx,qy,qz,quat_w", "'qw', 'quat_w': more than one column may be"),
+    "no z": (
+        "t,qw,qx,qy",
+        "no column of the quaternion's z in the header, beside 'qw', 'qx', 'qy'",
+    ),
+    "mixed": ("t,w,qx,qy,qz", "no column of the quaternion's w in the header, beside 'qx', 'qy'"),
+    "no quaternion": ("t,a,b,c,d", "no quaternion, such as 'qw', 'qx', 'qy', 'qz', in the header"),
+    "numbered": ("t,q0,q1,q2,q3", "'q0', 'q1', 'q2', 'q3': numbers do not say which of them is w"),
+    "indexed": (
+        "t,q[0],q[1],q[2],q[3]",
+        "'q[0]', 'q[1]', 'q[2]', 'q[3]': numbers do not say which of them is w",
+    ),
+    "no time": ("frame,qw,qx,qy,qz", "no column of times, such as 't', in the header: 'frame'"),
+    "two times": ("time,timestamp_ns,qw,qx,qy,qz", "'time', 'timestamp_ns': more than one column"),
+    "split time": ("secs,nsecs,qw,qx,qy,qz", "'secs', 'nsecs': more than one column of times"),
+    "two positions": ("t,x,y,z,tx,ty,tz,qw,qx,qy,qz", "'x', 'tx': more than one column may be the"),
+    "no tz": ("t,tx,ty,qw,qx,qy,qz", "no column of the position's z in the header, beside 'tx'"),
+    "nothing known": ("a,b,c,d,e", "no column of times"),
+}
+
+
+@pytest.mark.parametrize(("header", "what"), CONTRADICTIONS.values(), ids=CONTRADICTIONS)
+def test_a_header_that_contradicts_itself_is_refused(
+    tmp_path: Path, header: str, what: str
+) -> None:
+    row = ",".join(["0", *["1"] * header.count(",")])
+    message = refusal(tmp_path, f"# first\n{header}\n{row}\n")
+    assert message.startswith(f", line 2: {what}")
+
+
+@pytest.mark.parametrize(
+    ("lines", "number", "what"),
+    [
+        ("# t,qx,qy,qz,qw\nt,qw,qx,qy,qz", 1, "the comment and another header name the columns"),
+        ("# t,qx,qy,qz,qw\n# t,qw,qx,qy,qz", 2, "the comment and another header name the columns"),
+        ("# t,qx,qy,qz", 1, "the comment names 4 columns, but the rows have 5 fields"),
+        ("# t,qx,qy,qz,qw,label", 1, "the comment names 6 columns, but the rows have 5 fields"),
+        ("# quaternions: x, y, z, w", 1, "the comment names 4 columns, but the rows have 5 fields"),
+        ("# t,qx,qy,qz,px", 1, "no column of the quaternion's w in the header"),
+        ("t,qw,qx,qy,qz,label", 2, "expected 6 fields, found 5 (separated by commas)"),
+    ],
+)
+def test_headers_that_contradict_the_rows_are_refused(
+    tmp_path: Path, lines: str, number: int, what: str
+) -> None:
+    message = refusal(tmp_path, f"{lines}\n{table('tWXYZ')}")
+    assert message.startswith(f", line {number}: {what}")
+
+
+@pytest.mark.parametrize(
+    ("first", "what"),
+    [
+        ("0x,0.8,0.6,0,0", "t = '0x' is not a number"),
+        ("x,0.8,0.6,0,0", "t = 'x' is not a number"),
+        ("t,0.8,0.6,0,0", "t = 't' is not a number"),
+        ("0,0.8,O.6,0,0", "qx = 'O.6' is not a number"),
+        ("0,w,x,0,0", "qw = 'w' is not a number"),
+        ("nan,nan,nan,nan,nan", "t holds no number"),
+        (",,,,", "t holds no number"),
+        ("0,0.8,0.6,0", "expected 5 fields, found 4 (separated by commas)"),
+        ("0 0.8 0.6 0", "expected 5 fields, found 4 (separated by blanks)"),
+        ("0;0.8;0.6;0;0;0", "expected 5 fields, found 6 (separated by semicolons)"),
+        ("0,0,0,8,0,6,0,0,0,0", "expected 5 fields, found 10 (separated by commas)"),
+        ("0/1/0/0/0", "no column of times, such as 't', in the header: '0/1/0/0/0'"),
+    ],
+)
+def test_a_damaged_first_line_is_no_header(tmp_path: Path, first: str, what: str) -> None:
+    message = refusal(tmp_path, f"{first}\n{table('tWXYZ')}")
+    assert message.startswith(f", line 1: {what}")
+
+
+@pytest.mark.parametrize(
+    ("row", "what"),
+    [
+        ("2 1 0 0 0", "expected 5 fields, found 1 (separated by commas)"),
+        ('2,"1,0,0,0', "quotes do not match"),
+        ("2,1,0,0,1_0", "qz = '1_0' is not a number"),
+    ],
+)
+def test_a_row_unlike_the_others_is_refused(tmp_path: Path, row: str, what: str) -> None:
+    assert refusal(tmp_path, f"{table('tWXYZ')}{row}\n3,1,0,0,0\n").startswith(f", line 3: {what}")
+
+
+def test_decimal_commas_and_points_do_not_mix(tmp_path: Path) -> None:
+    message = refusal(tmp_path, "0;0,8;0,6;0;0\n1;0.8;0.6;0;0\n")
+    assert message == ", line 2: decimal commas and decimal points in one file"
