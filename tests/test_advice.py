@@ -37,7 +37,7 @@ def told(*rows: dict[str, object]) -> list[str]:
 
 
 GLOBAL = {"support": "all"}
-QUICK = {"seconds_per_sample": 1e-9}
+QUICK = {"seconds_per_sample": 1e-10}
 
 
 def test_one_scheme_has_the_least_torque_and_nothing_to_be_compared_with() -> None:
@@ -82,11 +82,11 @@ def test_a_quicker_scheme_is_better_in_both_or_costs_torque(
 ) -> None:
     rows = row("a", torque=own), row("b", torque=quick, **GLOBAL, **QUICK)
     (line,) = told(*rows)[1:]
-    assert line.startswith(f"Many times quicker to evaluate than a is b{said}")
+    assert line.startswith(f"Tens of times quicker to evaluate than a is b{said}")
 
 
 def test_no_word_about_speed_within_noise() -> None:
-    lines = told(row("a"), row("b", torque=1.5, seconds_per_sample=0.25e-8))
+    lines = told(row("a"), row("b", torque=1.5, seconds_per_sample=0.05e-8))
     assert len(lines) == 1
 
 
@@ -103,6 +103,14 @@ def test_the_papers_curve_is_placed() -> None:
         "The paper's quartic has the least torque of all measured to three digits and the least peak acceleration of "
         "all measured."
     )
+
+
+def test_rest_that_only_a_scheme_out_of_the_choice_has_is_not_compared_with() -> None:
+    lines = told(row("a", misses=0.0), row("b", torque=0.0, key_speed=0.0))
+    assert lines == [
+        "Take a: it passes through the keyframes (largest miss 0 rad), is C2 as measured here, and a changed keyframe "
+        "changes the curve nearby only."
+    ]
 
 
 def test_what_needs_a_peak_where_another_needs_none() -> None:
@@ -164,14 +172,13 @@ def test_every_number_is_a_quote() -> None:
 
 
 def test_timings_do_not_change_what_is_said() -> None:
-    """Ten runs, as far as the clock tells them apart, and a machine that slows down meanwhile."""
+    """Ten runs, as far as the clock tells them apart, on a machine that others use, too."""
     names = ["local-quintic", "kim", "log-cubic", "quartic", "nielson", "squad", "min-torque"]
     table, rng = qs.compare(None, walk(9, 50.0, seed=1), names), np.random.default_rng(0)
+    table[TIMES] = [1e-5, 1e-8]  # as they were seen on a quiet machine
     said = [finding.text for finding in advice.recommendation(table)]
-    table["seconds_per_sample"] = table["seconds_per_sample"].median()
-    assert [finding.text for finding in advice.recommendation(table)] == said
     for _ in range(10):
-        noise = rng.uniform(0.5, 2.0, (len(table), len(TIMES)))
+        noise = rng.uniform(0.2, 9.0, (len(table), len(TIMES)))
         jittered = table.assign(
             **dict(zip(TIMES, (table[TIMES].to_numpy() * noise).T, strict=True))
         )
