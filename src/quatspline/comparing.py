@@ -110,9 +110,7 @@ def _compared(
 
     if keyframes.track_shape:
         raise ValueError(f"quaternions has {keyframes.track_shape} tracks: compare takes one")
-    names = list(
-        dict.fromkeys(scheme(name).name for name in (schemes() if named is None else named))
-    )
+    names = list(dict.fromkeys(schemes() if named is None else (scheme(n).name for n in named)))
     if not names:
         raise ValueError("schemes is empty: name at least one")
     rows: list[Row] = []
@@ -171,7 +169,6 @@ def _measured(name: str, keyframes: Keyframes, curves: dict[str, Curve]) -> list
     if smooth < 1:  # a jump of the velocity is an infinite torque, which no quadrature sees
         fair |= dict.fromkeys(ENERGIES, np.inf)
     pace, report = speeds(curve), curve.solve_report
-    curves[name] = curve
     row = {
         "continuity": smooth,
         "misses": _misses(curve),
@@ -182,6 +179,7 @@ def _measured(name: str, keyframes: Keyframes, curves: dict[str, Curve]) -> list
         "iterations": report.iterations if report else None,
         **facts(curve),
     }
+    curves[name] = curve  # of what failed, no seconds
     return [row]
 
 

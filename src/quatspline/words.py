@@ -36,25 +36,21 @@ def apart(
     ValueError
         Where a word is a scheme's name and what the command waits for, too.
     """
-    from quatspline.registry import found
-
-    known = found()
-    schemes, others, doubtful = [], [], []
-    for group in groups:
-        for i, word in enumerate(group):
-            named = bool(names([word])) and all(name in known for name in names([word]))
-            if meant(word) and not named:
-                others.append(word)
-                continue
-            schemes.append(word)
-            if i and named and meant(word):
-                doubtful.append(word)
+    placed = [(word, i > 0) for group in groups for i, word in enumerate(group)]
+    others = [word for word, _ in placed if meant(word) and not _names_schemes(word)]
+    schemes = [word for word, _ in placed if not meant(word) or _names_schemes(word)]
+    doubtful = [word for word, later in placed if later and meant(word) and _names_schemes(word)]
     if doubtful and not (one and others):
-        word = doubtful[0]
         raise ValueError(
-            f"--schemes ... {word}: both a scheme and {what}: if {what} is meant, put it before --schemes"
+            f"--schemes ... {doubtful[0]}: both a scheme and {what}: if {what} is meant, put it before --schemes"
         )
     return names(schemes), others
+
+
+def _names_schemes(word: str) -> bool:
+    from quatspline.registry import found
+
+    return bool(names([word])) and set(names([word])) <= set(found())
 
 
 def of_run(experiments: Sequence[str], groups: Groups | None) -> tuple[list[str], list[str] | None]:
