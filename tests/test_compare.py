@@ -13,8 +13,10 @@ import pytest
 import quatspline as qs
 from quatspline import cli, quaternion
 from quatspline.comparing import COLUMNS
+from quatspline.keyframes import Keyframes
 from quatspline.report import advice
 from quatspline.report.quotes import Quote
+from quatspline.solving import SolveReport, require_converged
 from quatspline.trajectories.edges import edge_cases
 from quatspline.trajectories.files import Motion, write
 from walks import walk
@@ -89,9 +91,30 @@ def test_stopping_at_keyframes_or_missing_them_is_not_recommended(table: pd.Data
     spoilt = table.copy()
     spoilt.loc[spoilt["scheme"] == "local-quintic", "misses"] = 0.1
     assert "local-quintic" not in set(advice.candidates(spoilt)["scheme"])
-    nothing = table.assign(failure="refused")
-    assert advice.recommendation(nothing) == []
-    assert list(advice.lines([])) != []
+
+
+def test_a_failure_that_readers_know_is_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fit(self: qs.Curve, keyframes: Keyframes) -> None:
+        report = SolveReport("jacobi", "residual", 77, 1e-16, 0.3, False, 1e-9)
+        require_converged("nielson", report, tracks=False)
+
+    monkeypatch.setattr(qs.scheme("nielson"), "_fit", fit)
+    keyframes = tmp_path / "keys.npz"
+    np.savez(keyframes, times=[0.0, 2.0, 2.1], quaternions=walk(3, 40.0, seed=1))
+    names = ["nielson", "kim"]
+    for schemes in (names, names[:1]):
+        out = tmp_path / f"out{len(schemes)}"
+        arguments = ["compare", "--schemes", *schemes, str(keyframes), "--out", str(out)]
+        assert cli.main(arguments) == 0
+        told = capsys.readouterr().out.splitlines()
+        head = "Take kim: " if "kim" in schemes else "No recommendation: nothing was measured."
+        assert told[0].startswith(head)
+        assert told[-1].startswith("Not measured: nielson (ConvergenceError: it (jacobi) did not")
+        written = (out / "recommendation.md").read_text().splitlines()
+        assert written[2:] == [f"- {line}" for line in told]
+        assert "did not converge" in (out / "report.html").read_text()
 
 
 def test_command_writes_table_figures_advice_and_page(
@@ -120,9 +143,7 @@ def test_rounding_of_curves_at_rest_is_not_compared() -> None:
     )
     assert (table[["torque", "jerk", "peak"]] == 0.0).all(axis=None)
     assert (table[["torque_over_least", "peak_over_least"]] == 1.0).all(axis=None)
-    assert not any(
-        "torque of the quickest" in line for line in advice.lines(advice.recommendation(table))
-    )
+    assert not any("torque is" in line for line in advice.lines(advice.recommendation(table)))
 
 
 def test_times_of_a_clock_compare_as_times_from_zero() -> None:

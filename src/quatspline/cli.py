@@ -14,7 +14,7 @@ import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
 from quatspline import __version__
 
@@ -123,7 +123,7 @@ def _add_run(commands: Any) -> None:
 
 def _add_compare(commands: Any) -> None:
     compare = commands.add_parser("compare", help="schemes on your own keyframes")
-    _add_keyframes(compare)
+    _add_keyframes(compare, nargs="?")  # it may stand behind the words of --schemes
     _add_schemes(compare)
     where = "for tables, figures and the page; by default KEYFRAMES-compared here"
     compare.add_argument("--out", type=Path, metavar="DIR", help=where)
@@ -154,19 +154,19 @@ def _add_report(commands: Any) -> None:
     report.set_defaults(call=_report)
 
 
-def _add_keyframes(parser: argparse.ArgumentParser) -> None:
+def _add_keyframes(parser: argparse.ArgumentParser, nargs: Literal["?"] | None = None) -> None:
     kinds = (
         "CSV (t,qw,qx,qy,qz, or columns named in a header), TUM (t tx ty tz qx qy qz qw) or NPZ "
         "(times, quaternions, positions)"
     )
-    parser.add_argument("keyframes", metavar="KEYFRAMES", help=kinds)
+    parser.add_argument("keyframes", metavar="KEYFRAMES", help=kinds, nargs=nargs)
     closing = "a closed curve: the last row repeats the first orientation, or times are uniform"
     parser.add_argument("--closed", action="store_true", help=closing)
 
 
 def _add_schemes(parser: argparse.ArgumentParser) -> None:
     names = "names, by blanks or commas"
-    parser.add_argument("--schemes", nargs="+", metavar="S", action="extend", help=names)
+    parser.add_argument("--schemes", nargs="+", metavar="S", action="append", help=names)
 
 
 def _number(kind: type, accepts: Callable[[Any], bool], wanted: str) -> Callable[[str], Any]:
@@ -182,18 +182,6 @@ def _number(kind: type, accepts: Callable[[Any], bool], wanted: str) -> Callable
 _rate = _number(float, lambda value: 0.0 < value < math.inf, "a positive number")
 _count = _number(int, lambda value: value >= 1, "a whole number, at least 1,")
 _seed = _number(int, lambda value: value >= 0, "a whole number, at least 0,")
-
-
-def _schemes(arguments: argparse.Namespace) -> list[str] | None:
-    """The schemes asked for, each of which can be used."""
-    if arguments.schemes is None:
-        return None
-    from quatspline import registry
-
-    names = [name for given in arguments.schemes for name in given.split(",") if name]
-    if not names:
-        raise ValueError("--schemes: no name given")
-    return [registry.scheme(name).name for name in dict.fromkeys(names)]
 
 
 # -- commands -----------------------------------------------------------------------------------
@@ -229,11 +217,12 @@ def _yes(claim: bool) -> str:
 
 
 def _run(arguments: argparse.Namespace) -> int:
-    from quatspline import running
+    from quatspline import running, words
 
+    experiments, schemes = words.of_run(arguments.experiments, arguments.schemes)
     failed = running.run(
-        arguments.experiments,
-        schemes=_schemes(arguments),
+        experiments,
+        schemes=schemes,
         size=arguments.size,
         seed=arguments.seed,
         out=arguments.out,
@@ -245,9 +234,10 @@ def _run(arguments: argparse.Namespace) -> int:
 
 
 def _compare(arguments: argparse.Namespace) -> int:
-    from quatspline import comparing
+    from quatspline import comparing, words
 
-    schemes = _schemes(arguments)  # a wrong name is told before a long file is read
+    # A wrong name is told before a long file is read.
+    arguments.keyframes, schemes = words.of_compare(arguments.keyframes, arguments.schemes)
     motion = _motion(arguments)
     out = arguments.out or Path(f"{Path(arguments.keyframes).stem}-compared")
     return comparing.command(

@@ -19,6 +19,7 @@ from quatspline.curve import Curve
 from quatspline.experiment import Run
 from quatspline.instruments.continuity import jumps, measured_continuity, rounding, speeds
 from quatspline.instruments.fairness import fairness
+from quatspline.instruments.practical import left_out
 from quatspline.instruments.timing import interleaved, repeated
 from quatspline.instruments.trials import Row, attempted, facts
 from quatspline.keyframes import Keyframes
@@ -34,13 +35,6 @@ if TYPE_CHECKING:
 TOLERANCE = 1e-9
 """Of iterative schemes, in rad."""
 
-PROBES, CALLS = 40, 400
-"""Samples that foretell what instruments cost a scheme, which take about CALLS of them a segment."""
-MANY = 300
-"""Keyframes from which a set-up is foretold."""
-BUDGET = 3.0
-"""Seconds that a scheme may take of a comparison unless it is asked for by name."""
-
 ROUNDS, LEAST, SLOW = 5, 2e-3, 0.02
 """Of the timings: rounds, seconds a measurement, and the seconds from which one call is enough."""
 
@@ -50,7 +44,8 @@ NOTE = (
     "continuity is k of C^k as measured on these keyframes; misses the largest angle at a keyframe (rad); torque the "
     "integral of |alpha|^2, jerk that of |alpha'|^2, peak the largest |alpha|, infinite where the velocity jumps, each "
     "also over the least here; key_speed the least speed at an inner keyframe, peak_speed the largest, over the mean. "
-    "Iterative schemes solve to 1e-9. Compare seconds within this table only."
+    "Iterative schemes solve to 1e-9. Every segment is measured, however many there are; failure says why a scheme was "
+    "not. Compare seconds within this table only."
 )
 BARS = "Torque energy over the least of all schemes compared; hollow: not C2 as measured here.\n"
 RATES = "Norms of the angular velocity and acceleration over time; grey lines are keyframes.\n"
@@ -74,13 +69,15 @@ def compare(
     Parameters
     ----------
     times, quaternions, closed : a single track, as `quatspline.build` takes it
-    schemes : names, by default all; those that would take long are then left out with a reason
+    schemes : names, by default all; of those, libraries' schemes that would take long on so many
+        keyframes are left out with a reason, the same ones in every run
 
     Returns
     -------
     DataFrame with the columns scheme, continuity, misses, torque, jerk, peak, length (rad), the first
     three over the least here, key_speed, peak_speed, support, iterations, rates, version, failure and
-    the timings seconds_set_up and seconds_per_sample; sorted by torque, failures last.
+    the timings seconds_set_up and seconds_per_sample; sorted by torque, failures last.  ``failure``
+    says why a scheme was not measured, all else in its row being NaN; it is NaN where one was.
 
     Raises
     ------
@@ -96,7 +93,7 @@ def compare(
     {'quartic': 2, 'slerp': 0}
     """
     keyframes = _prepared(times, quaternions, closed)
-    return _compared(keyframes, schemes)
+    return _compared(keyframes, schemes)[0]
 
 
 def _prepared(times: ArrayLike | None, quaternions: ArrayLike, closed: bool) -> Keyframes:
@@ -105,25 +102,31 @@ def _prepared(times: ArrayLike | None, quaternions: ArrayLike, closed: bool) -> 
     return replace(keyframes, times=keyframes.knots)
 
 
-def _compared(keyframes: Keyframes, named: Sequence[str] | None) -> pd.DataFrame:
+def _compared(
+    keyframes: Keyframes, named: Sequence[str] | None
+) -> tuple[pd.DataFrame, dict[str, Curve]]:
+    """The table, and the curves that were measured."""
     import pandas as pd
 
     if keyframes.track_shape:
         raise ValueError(f"quaternions has {keyframes.track_shape} tracks: compare takes one")
-    names = schemes() if named is None else [scheme(name).name for name in named]
+    names = list(dict.fromkeys(schemes() if named is None else (scheme(n).name for n in named)))
     if not names:
         raise ValueError("schemes is empty: name at least one")
     rows: list[Row] = []
     curves: dict[str, Curve] = {}
     for name in Run(quick=True).progress(names, label="compare"):
-        measure = partial(_measured, name, keyframes, curves, thrifty=named is None)
-        rows.append({"scheme": name} | attempted(measure)[0])
+        reason = left_out(name, keyframes.count) if named is None else None
+        measure = partial(_measured, name, keyframes, curves)
+        row = attempted(measure)[0] if reason is None else {"failure": reason}
+        rows.append({"scheme": name} | row)
     table = pd.DataFrame(rows).reindex(columns=COLUMNS)
     for name, seconds in _timed(keyframes, curves).items():
         table.loc[table["scheme"] == name, list(seconds)] = list(seconds.values())
     for name in ENERGIES:
         table[f"{name}_over_least"] = _over_least(table[name])
-    return table.sort_values(["torque", "scheme"], na_position="last", ignore_index=True)
+    table = table.sort_values(["torque", "scheme"], na_position="last", ignore_index=True)
+    return table, curves
 
 
 def _over_least(values: pd.Series) -> pd.Series:
@@ -158,21 +161,14 @@ def _built(name: str, keyframes: Keyframes) -> Curve:
     return cls.from_keyframes(keyframes, **given)
 
 
-def _measured(
-    name: str, keyframes: Keyframes, curves: dict[str, Curve], thrifty: bool
-) -> list[Row]:
-    """The row of one scheme; its curve is kept for the timings."""
-    if thrifty:
-        _afford_set_up(name, keyframes)
+def _measured(name: str, keyframes: Keyframes, curves: dict[str, Curve]) -> list[Row]:
+    """The row of one scheme; its curve is kept for timings and figures."""
     curve = _built(name, keyframes)
-    if thrifty:
-        _afford_samples(curve)
     smooth = measured_continuity(jumps(curve))
     fair = _above_rounding(curve, fairness(curve))
     if smooth < 1:  # a jump of the velocity is an infinite torque, which no quadrature sees
         fair |= dict.fromkeys(ENERGIES, np.inf)
     pace, report = speeds(curve), curve.solve_report
-    curves[name] = curve
     row = {
         "continuity": smooth,
         "misses": _misses(curve),
@@ -183,6 +179,7 @@ def _measured(
         "iterations": report.iterations if report else None,
         **facts(curve),
     }
+    curves[name] = curve  # of what failed, no seconds
     return [row]
 
 
@@ -193,32 +190,6 @@ def _above_rounding(curve: Curve, fair: Row) -> Row:
     floors = (alpha**2 * (h**-3).sum(), slope**2 * (h**-5).sum(), alpha * (h**-2).max())
     zero = [name for name, floor in zip(ENERGIES, floors, strict=True) if fair[name] <= floor]
     return fair | dict.fromkeys(zero, 0.0)
-
-
-def _afford_set_up(name: str, keyframes: Keyframes) -> None:
-    """Refuse a scheme whose set-up would take longer than the budget: it may grow with the square."""
-    count = keyframes.count
-    if failure := scheme(name).impractical(count):
-        raise ValueError(f"{failure}; ask for it by name")
-    if count > MANY:
-        start = time.perf_counter()
-        _built(name, kf.prepare(keyframes.times[:MANY], keyframes.quaternions[:MANY]))
-        _refuse_beyond_budget((time.perf_counter() - start) * (count / MANY) ** 2)
-
-
-def _afford_samples(curve: Curve) -> None:
-    """Refuse a curve whose samples would take longer than the budget."""
-    probe = np.linspace(*curve.domain, PROBES)
-    curve(probe)
-    start = time.perf_counter()
-    curve(probe)
-    each = (time.perf_counter() - start) / PROBES
-    _refuse_beyond_budget(each * CALLS * curve.keyframes.spacings.size)
-
-
-def _refuse_beyond_budget(seconds: float) -> None:
-    if seconds > BUDGET:
-        raise ValueError("over budget; ask for it by name")
 
 
 def _misses(curve: Curve) -> float:
@@ -292,14 +263,14 @@ def command(
     keyframes = _prepared(motion.times, motion.quaternions, closed)
     results = Results(out)
     results.begin(call, schemes=list(schemes) if schemes is not None else None)
-    table = _compared(keyframes, schemes)
+    table, curves = _compared(keyframes, schemes)
     table = results.table("compare", table, title=TITLE, note=NOTE, formats=FORMATS, keys=[])
     found = advice.recommendation(table)
     results.text("recommendation.md", advice.markdown(found))
     names = advice.shown(table)
     with style.house():
         results.figure("compare", advice.bars(table))
-        results.figure("rates", advice.rates(keyframes, names))
+        results.figure("rates", advice.rates({name: curves[name] for name in names}, keyframes))
     results.text("compare.caption.txt", BARS)
     results.text("rates.caption.txt", RATES)
     entry = {"title": TITLE, "size": f"{keyframes.count} keyframes", "seed": None}

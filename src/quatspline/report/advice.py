@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from quatspline.curve import Curve
 from quatspline.instruments.derivatives import shape_rates
 from quatspline.keyframes import Keyframes
 from quatspline.quaternion import FloatArray
-from quatspline.registry import scheme
+from quatspline.registry import found as schemes_found
 from quatspline.report import style
 from quatspline.report.findings import Finding
-from quatspline.report.quotes import Ledger, Quote, said
+from quatspline.report.quotes import Ledger, Part, Quote, multiple, said
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -25,6 +26,11 @@ FAIR = 1.05
 """Torque within this of the least is as good as the least: nobody sees five per cent."""
 STOPS = 0.01
 """A least speed at keyframes below this share of the mean is a stop."""
+EQUAL = 0.005
+"""Torques that differ by a smaller share are the same to three digits, and said to be."""
+QUICKER = 50.0
+"""Times quicker that a candidate must be for a word about it: on a busy machine a timing was seen to be off
+ten-fold, and what is said must not differ from run to run."""
 CURVES = 4
 """Schemes drawn over time."""
 SAMPLES = 2000
@@ -36,24 +42,26 @@ FAMILIAR = (PAPERS, "squad", "nielson", "slerp")
 
 
 def recommendation(table: pd.DataFrame) -> list[Finding]:
-    """The advice for a table of `quatspline.compare`, best reason first; empty if nothing works.
+    """The advice for a table of `quatspline.compare`, best reason first, then what was not measured and why.
 
     Candidates pass through the keyframes (to MET), are C2 as measured (C1 if none is), do not stop
     at keyframes (unless all do), and have a torque within FAIR of the least among them.  Local
     schemes go before global ones, then the least torque decides.
     """
-    pool = candidates(table)
-    if pool.empty:
-        return []
     ledger = Ledger(lambda name: table)
-    best, fairest = _best(pool), str(pool.iloc[0]["scheme"])
-    torques = pool.set_index("scheme")["torque"]
-    found = [_first(ledger, best, pool)]
-    if torques[best] > torques[fairest]:
+    pool = candidates(table)
+    found = _reasons(ledger, table, pool) if len(pool) else [_nothing(table)]
+    return [*found, *_not_measured(ledger, table)]
+
+
+def _reasons(ledger: Ledger, table: pd.DataFrame, pool: pd.DataFrame) -> list[Finding]:
+    best = _best(pool)
+    found = [_first(ledger, best)]
+    fairest, quicker = str(pool.iloc[0]["scheme"]), _quicker(pool, best)
+    if fairest != quicker and not _equal(ledger, fairest, best):
         found.append(_fairest(ledger, fairest, best))
-    quickest = str(pool.sort_values("seconds_per_sample").iloc[0]["scheme"])
-    if quickest != best:
-        found.append(_quickest(ledger, quickest, best))
+    if quicker is not None:
+        found.append(_quickest(ledger, quicker, best))
     paper = table[(table["scheme"] == PAPERS) & table["failure"].isna()]
     if best != PAPERS and len(paper) and np.isfinite(paper["torque_over_least"]).all():
         found.append(_paper(ledger))
@@ -61,13 +69,24 @@ def recommendation(table: pd.DataFrame) -> list[Finding]:
 
 
 def candidates(table: pd.DataFrame) -> pd.DataFrame:
-    """The rows among which the recommendation chooses, by torque, those of equal torque by time."""
+    """The rows among which the recommendation chooses, best first: by torque, and those of equal torque by
+    what they claim, jerk and support.  No clock decides."""
     pool = table[table["failure"].isna() & (table["misses"] <= MET) & np.isfinite(table["torque"])]
     if pool.empty:
         return pool
     smoothest = pool[pool["continuity"] >= min(2, pool["continuity"].max())]
     moving = smoothest[~(smoothest["key_speed"] < STOPS)]
-    return (moving if len(moving) else smoothest).sort_values(["torque", "seconds_per_sample"])
+    ranked = moving if len(moving) else smoothest
+    return ranked.iloc[sorted(range(len(ranked)), key=lambda i: _rank(ranked.iloc[i]))]
+
+
+def _rank(row: pd.Series) -> tuple[Any, ...]:
+    """The less, the better."""
+    item = schemes_found().get(str(row["scheme"]))
+    claims = (item.scheme.continuity, item.scheme.order) if item and item.scheme else (0, 0)
+    torque, jerk = (float(f"{row[name]:.6g}") for name in ("torque", "jerk"))  # not by rounding
+    reach = np.inf if row["support"] == "all" else int(row["support"])
+    return torque, *(-claim for claim in claims), jerk, reach, str(row["scheme"])
 
 
 def _best(pool: pd.DataFrame) -> str:
@@ -76,68 +95,113 @@ def _best(pool: pd.DataFrame) -> str:
     return str((local if len(local) else fair).iloc[0]["scheme"])
 
 
-def _cell(ledger: Ledger, name: str, column: str) -> Quote:
-    return Quote((ledger("compare", column, scheme=name),))
+def _quicker(pool: pd.DataFrame, best: str) -> str | None:
+    """The fairest of the candidates that are evaluated QUICKER times as fast as a scheme."""
+    seconds = pool.set_index("scheme")["seconds_per_sample"]
+    quick = seconds.index[seconds * QUICKER <= seconds[best]]
+    return str(quick[0]) if len(quick) else None
 
 
-def _ratio(ledger: Ledger, column: str, above: str, below: str) -> Quote:
-    cells = tuple(ledger("compare", column, scheme=name) for name in (above, below))
-    return Quote(cells, "ratio")
+def _equal(ledger: Ledger, name: str, other: str) -> bool:
+    """Whether two schemes need the same torque, to three digits."""
+    mine, others = (ledger("compare", "torque", scheme=who).value for who in (name, other))
+    return bool(abs(mine - others) <= EQUAL * max(mine, others))
 
 
-def _first(ledger: Ledger, best: str, pool: pd.DataFrame) -> Finding:
-    local = pool.set_index("scheme").loc[best, "support"] != "all"
-    reach = (
-        "a changed keyframe changes the curve nearby only" if local else "all keyframes shape it"
-    )
-    torque = _cell(ledger, best, "torque_over_least")
-    share = "its torque is {torque:.3f} times the least of all schemes compared, and "
+def _reach(ledger: Ledger, name: str) -> str:
+    local = ledger("compare", "support", scheme=name).value != "all"
+    return "a changed keyframe changes the curve nearby only" if local else "all keyframes shape it"
+
+
+def _over_least(ledger: Ledger, name: str, column: str, thing: str) -> tuple[Part, ...]:
+    """How much of an energy a scheme needs, as an object of "has"."""
+    cell = ledger("compare", f"{column}_over_least", scheme=name)
+    if cell.value == 1.0:
+        return (f"the least {thing} of all measured",)
+    if cell.value - 1.0 <= EQUAL:
+        return (f"the least {thing} of all measured to three digits",)
+    if np.isinf(cell.value):
+        return (f"a {thing} where another needs none",)
+    return multiple(cell), f" times the least {thing} of all measured"
+
+
+def _first(ledger: Ledger, best: str) -> Finding:
+    misses = ledger("compare", "misses", scheme=best)
+    digits = ".0e" if misses.value else ".0f"
     parts = said(
-        f"Take {best}: it passes through the keyframes (largest miss {{misses:.0e}} rad), is C{{k:.0f}} as measured "
-        f"here, {share if np.isfinite(torque.value) else 'and '}{reach}.",
-        misses=_cell(ledger, best, "misses"),
-        k=_cell(ledger, best, "continuity"),
-        torque=torque,
+        f"Take {best}: it passes through the keyframes (largest miss {{misses:{digits}}} rad), is C{{k:.0f}} as "
+        "measured here, ",
+        misses=misses,
+        k=ledger("compare", "continuity", scheme=best),
     )
-    return Finding(ADVICE, parts)
+    if np.isfinite(ledger("compare", "torque_over_least", scheme=best).value):
+        parts += ("has ", *_over_least(ledger, best, "torque", "torque"), ", ")
+    return Finding(ADVICE, (*parts, f"and {_reach(ledger, best)}."))
 
 
 def _fairest(ledger: Ledger, name: str, best: str) -> Finding:
-    text = (
-        f"The fairest candidate is {name}: the torque of {best} is {{ratio:.3f}} times its own; its set-up takes "
-        "{cost:.2g} times as long."
-    )
-    ratio = _ratio(ledger, "torque", best, name)
-    return Finding(
-        ADVICE, said(text, ratio=ratio, cost=_ratio(ledger, "seconds_set_up", name, best))
-    )
+    ratio = multiple(*(ledger("compare", "torque", scheme=who) for who in (best, name)))
+    head, tail = f"The fairest candidate is {name}: the torque of {best} is ", " times its own"
+    return Finding(ADVICE, (head, ratio, tail, *_price(ledger, name, best), "."))
+
+
+def _price(ledger: Ledger, name: str, best: str) -> tuple[str, ...]:
+    """What speaks against a scheme that is better than the recommended one, if its reach does."""
+    reach = _reach(ledger, name)
+    return () if reach == _reach(ledger, best) else (f", but {reach}",)
 
 
 def _quickest(ledger: Ledger, name: str, best: str) -> Finding:
-    text = f"The quickest candidate to evaluate is {name}: a sample of {best} takes {{cost:.2g}} times as long"
-    cost = _ratio(ledger, "seconds_per_sample", best, name)
-    torque = _ratio(ledger, "torque", name, best)
-    if not torque.cells[1].value:  # at rest no curve needs any
-        return Finding(ADVICE, said(text + ".", cost=cost))
-    text += ", but the torque of the quickest is {torque:.3f} times that of the first choice."
-    return Finding(ADVICE, said(text, cost=cost, torque=torque))
+    """No number: seconds differ from run to run, and stand in the table."""
+    cells = [ledger("compare", "torque", scheme=who) for who in (name, best)]
+    mine, others = (cell.value for cell in cells)
+    parts: tuple[Part, ...]
+    if _equal(ledger, name, best):
+        parts = (", at the same torque", *_price(ledger, name, best))
+    elif mine < others:
+        parts = (", and its torque is lower, too, ", multiple(*cells), f" times that of {best}")
+        parts += _price(ledger, name, best)
+    elif others:
+        parts = (", but its torque is ", multiple(*cells), f" times that of {best}")
+    else:  # at rest, or at a constant rate
+        parts = (f", but it needs a torque where {best} needs none",)
+    return Finding(
+        ADVICE, (f"Tens of times quicker to evaluate than {best} is {name}", *parts, ".")
+    )
 
 
 def _paper(ledger: Ledger) -> Finding:
-    text = (
-        "The paper's quartic has {torque:.3f} times the least torque here and a peak acceleration of {peak:.3f} times "
-        "the least."
-    )
-    torque, peak = (_cell(ledger, PAPERS, f"{name}_over_least") for name in ("torque", "peak"))
-    return Finding(ADVICE, said(text, torque=torque, peak=peak))
+    torque = _over_least(ledger, PAPERS, "torque", "torque")
+    peak = _over_least(ledger, PAPERS, "peak", "peak acceleration")
+    return Finding(ADVICE, ("The paper's quartic has ", *torque, " and ", *peak, "."))
+
+
+def _nothing(table: pd.DataFrame) -> Finding:
+    if table["failure"].notna().all():
+        return Finding(ADVICE, ("No recommendation: nothing was measured.",))
+    text = "No recommendation: no scheme measured passes through these keyframes with a continuous velocity."
+    return Finding(ADVICE, (text,))
+
+
+def _not_measured(ledger: Ledger, table: pd.DataFrame) -> Iterator[Finding]:
+    """One sentence a reason, with the names of all schemes that have it."""
+    groups: dict[str, list[str]] = {}
+    for name in sorted(table.loc[table["failure"].notna(), "scheme"]):
+        groups.setdefault(str(_reason(ledger, name)), []).append(name)
+    for names in groups.values():
+        listed = [Quote((ledger("compare", "scheme", scheme=name),)) for name in names]
+        commas = [part for quote in listed for part in (", ", quote)][1:]
+        yield Finding(ADVICE, ("Not measured: ", *commas, " (", _reason(ledger, names[0]), ")."))
+
+
+def _reason(ledger: Ledger, name: str) -> Quote:
+    cells = tuple(ledger("compare", column, scheme=name) for column in ("failure", "scheme"))
+    return Quote(cells, "reason")
 
 
 def lines(found: list[Finding]) -> Iterator[str]:
     """The advice as plain lines."""
-    if not found:
-        yield "No recommendation: no scheme compared passes through these keyframes with a continuous velocity."
-    for finding in found:
-        yield finding.text
+    return (finding.text for finding in found)
 
 
 def markdown(found: list[Finding]) -> str:
@@ -171,12 +235,11 @@ def bars(table: pd.DataFrame) -> Figure:
     return fig
 
 
-def rates(keyframes: Keyframes, names: list[str]) -> Figure:
-    """Norms of angular velocity and acceleration over time."""
+def rates(curves: Mapping[str, Curve], keyframes: Keyframes) -> Figure:
+    """Norms of angular velocity and acceleration over time of the curves that were measured, by name."""
     fig, panels = style.axes(style.PAGE, 3.6, 2, 1, sharex=True)
-    for name in names:
-        curve = scheme(name).from_keyframes(keyframes)
-        t = _times(keyframes)
+    t = _times(keyframes)
+    for name, curve in curves.items():
         looks = style.scheme_style(name) | {"marker": ""}
         for ax, rate in zip(panels[:, 0], shape_rates(curve, t), strict=True):
             ax.plot(t - t[0], np.linalg.norm(rate, axis=-1), label=name, **looks)
@@ -188,7 +251,7 @@ def rates(keyframes: Keyframes, names: list[str]) -> Figure:
             for knot in keyframes.knots:
                 ax.axvline(knot, color="#dddddd", lw=0.5, zorder=0)
     panels[1, 0].set_xlabel("t since the first keyframe")
-    if names:
+    if curves:
         style.legend_of(fig, panels[0, 0], CURVES)
     return fig
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from string import Formatter
@@ -26,10 +28,23 @@ class Cell:
         return f"{self.table}.csv[{where}].{self.column}"
 
 
+def three_digits(value: float) -> float:
+    """A number to three significant digits."""
+    return float(f"{value:.3g}")
+
+
+def without_name(reason: str, name: str) -> str:
+    """A scheme's reason to fail, said of no one by name: schemes of one reason are named together."""
+    return re.sub(rf"(?<![\w-]){re.escape(name)}(?![\w-])", "it", reason)
+
+
 EXPRESSIONS: dict[str, Callable[..., Any]] = {
     "value": lambda value: value,
     "percent": lambda value: 100.0 * value,
     "ratio": lambda above, below: above / below,
+    "rounded": three_digits,
+    "rounded ratio": lambda above, below: three_digits(above / below),
+    "reason": without_name,
     "least": lambda *values: min(values),
     "most": lambda *values: max(values),
 }
@@ -53,7 +68,7 @@ class Quote:
 
     @property
     def value(self) -> Any:
-        """The number, unrounded."""
+        """What the expression makes of the cells."""
         return EXPRESSIONS[self.expression](*(cell.value for cell in self.cells))
 
     @property
@@ -66,6 +81,14 @@ class Quote:
             return format(self.value, self.spec)
         except (TypeError, ValueError) as error:  # text where a number is expected
             raise ValueError(f"{self.cells[0]}: {error}") from error
+
+
+def multiple(*cells: Cell) -> Quote:
+    """One cell, or the first over the second, to three significant digits in plain notation."""
+    quote = Quote(cells, "rounded" if len(cells) == 1 else "rounded ratio")
+    size = quote.value
+    decimals = 2 - math.floor(math.log10(size)) if size and math.isfinite(size) else 0
+    return replace(quote, spec=f".{max(decimals, 0)}f")
 
 
 Span = tuple[Quote, Quote]

@@ -1,0 +1,186 @@
+"""What a comparison says, on tables made for each sentence."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import quatspline as qs
+from quatspline.comparing import COLUMNS, ENERGIES
+from quatspline.report import advice
+from walks import walk
+
+TIMES = ["seconds_set_up", "seconds_per_sample"]
+
+
+def row(scheme: str, **given: object) -> dict[str, object]:
+    """A good row: local, C2, fair; a failed one has nothing else."""
+    if "failure" in given:
+        return {"scheme": scheme, **given}
+    good = {"continuity": 2, "misses": 1e-15, "torque": 1.0, "jerk": 1.0, "peak": 1.0}
+    good |= {"key_speed": 0.5, "peak_speed": 1.5, "length": 1.0, "support": "4"}
+    return good | dict.fromkeys(TIMES, 1e-8) | {"scheme": scheme} | given
+
+
+def table_of(*rows: dict[str, object]) -> pd.DataFrame:
+    table = pd.DataFrame(list(rows)).reindex(columns=COLUMNS)
+    for name in ENERGIES:
+        table[f"{name}_over_least"] = table[name] / table[name].min()
+    return table
+
+
+def told(*rows: dict[str, object]) -> list[str]:
+    return list(advice.lines(advice.recommendation(table_of(*rows))))
+
+
+GLOBAL = {"support": "all"}
+QUICK = {"seconds_per_sample": 1e-10}
+
+
+def test_one_scheme_has_the_least_torque_and_nothing_to_be_compared_with() -> None:
+    assert told(row("a")) == [
+        "Take a: it passes through the keyframes (largest miss 1e-15 rad), is C2 as measured here, has the least "
+        "torque of all measured, and a changed keyframe changes the curve nearby only."
+    ]
+
+
+def test_a_fairer_scheme_is_named_with_what_speaks_against_it() -> None:
+    lines = told(row("a", torque=1.04), row("b", **GLOBAL))
+    assert "has 1.04 times the least torque of all measured, and a changed" in lines[0]
+    assert lines[1:] == [
+        "The fairest candidate is b: the torque of a is 1.04 times its own, but all keyframes shape it."
+    ]
+
+
+@pytest.mark.parametrize("torque", [1.0, 1.0 + 1e-12, 1.0004, 1.0049])
+def test_equal_is_said_as_equal(torque: float) -> None:
+    lines = told(row("a", torque=torque), row("b", **GLOBAL))
+    assert len(lines) == 1
+    assert "the least torque of all measured" in lines[0]
+    assert ("to three digits" in lines[0]) == (torque != 1.0)
+    assert " times" not in lines[0]
+
+
+@pytest.mark.parametrize(
+    ("own", "quick", "said"),
+    [
+        (1.04, 1.0, ", and its torque is lower, too, 0.962 times that of a, but all keyframes"),
+        (1.0, 1.002, ", at the same torque, but all keyframes shape it."),
+        (1.0, 1.5, ", but its torque is 1.50 times that of a."),
+        (1.0, 12.34, ", but its torque is 12.3 times that of a."),
+        (1.0, 551.0, ", but its torque is 551 times that of a."),
+        (1.0, 551234.0, ", but its torque is 551000 times that of a."),
+        (0.0, 1.0, ", but it needs a torque where a needs none."),
+        (0.0, 0.0, ", at the same torque, but all keyframes shape it."),
+    ],
+)
+def test_a_quicker_scheme_is_better_in_both_or_costs_torque(
+    own: float, quick: float, said: str
+) -> None:
+    rows = row("a", torque=own), row("b", torque=quick, **GLOBAL, **QUICK)
+    (line,) = told(*rows)[1:]
+    assert line.startswith(f"Tens of times quicker to evaluate than a is b{said}")
+
+
+def test_no_word_about_speed_within_noise() -> None:
+    lines = told(row("a"), row("b", torque=1.5, seconds_per_sample=0.05e-8))
+    assert len(lines) == 1
+
+
+def test_the_papers_curve_is_placed() -> None:
+    def placed(**given: float) -> str:
+        return told(row("a", **GLOBAL), row("quartic", **GLOBAL, **given))[-1]
+
+    least = "The paper's quartic has 1.17 times the least torque of all measured and "
+    assert placed(torque=1.17) == least + "the least peak acceleration of all measured."
+    assert placed(torque=1.17, peak=1.26) == (
+        least + "1.26 times the least peak acceleration of all measured."
+    )
+    assert placed(torque=1.0001) == (
+        "The paper's quartic has the least torque of all measured to three digits and the least peak acceleration of "
+        "all measured."
+    )
+
+
+def test_rest_that_only_a_scheme_out_of_the_choice_has_is_not_compared_with() -> None:
+    lines = told(row("a", misses=0.0), row("b", torque=0.0, key_speed=0.0))
+    assert lines == [
+        "Take a: it passes through the keyframes (largest miss 0 rad), is C2 as measured here, and a changed keyframe "
+        "changes the curve nearby only."
+    ]
+
+
+def test_what_needs_a_peak_where_another_needs_none() -> None:
+    table = table_of(row("a", **GLOBAL), row("quartic", **GLOBAL, torque=1.2))
+    table["peak_over_least"] = [1.0, np.inf]
+    line = advice.recommendation(table)[-1].text
+    assert line.endswith(" and a peak acceleration where another needs none.")
+
+
+def test_nothing_measured_is_not_blamed_on_continuity() -> None:
+    reasons = ("over budget; ask for it by name", "ValueError: closed=True: {} has no closed curve")
+    rows = [row(n, failure=reasons[n in "bd"].format(n)) for n in "abcd"]
+    assert told(*rows) == [
+        "No recommendation: nothing was measured.",
+        "Not measured: a, c (over budget; ask for it by name).",
+        "Not measured: b, d (ValueError: closed=True: it has no closed curve).",
+    ]
+
+
+def test_nothing_that_passes_is_told_as_that() -> None:
+    leaps = dict.fromkeys(("torque", "jerk", "peak"), np.inf)
+    for bad in ({"continuity": 0, **leaps}, {"misses": 0.1}):
+        lines = told(row("a", **bad), row("nielson", failure="ConvergenceError: no"))
+        assert lines == [
+            "No recommendation: no scheme measured passes through these keyframes with a continuous velocity.",
+            "Not measured: nielson (ConvergenceError: no).",
+        ]
+
+
+def test_a_failure_is_said_beside_a_recommendation() -> None:
+    why = "ConvergenceError: nielson (jacobi) did not converge: residual 0.3 rad"
+    lines = told(row("a"), row("nielson", failure=why), row("quartic", failure="ValueError: x"))
+    assert lines[0].startswith("Take a: ")
+    assert lines[1:] == [
+        "Not measured: nielson (ConvergenceError: it (jacobi) did not converge: residual 0.3 rad).",
+        "Not measured: quartic (ValueError: x).",
+    ]
+
+
+def test_only_a_schemes_own_name_is_left_out_of_its_reason() -> None:
+    (_, line) = told(row("kim", failure="skimming kim-like kim: scipy-kim"))
+    assert line == "Not measured: kim (skimming kim-like it: scipy-kim)."
+
+
+def test_curves_of_equal_torque_are_told_apart_by_what_they_claim() -> None:
+    at_rest = {"torque": 0.0, "jerk": 0.0, "peak": 0.0, "support": "2", "continuity": 3}
+    names = ("slerp", "catmull-rom", "local-quintic", "quartic", "nlerp")
+    rows = [row(name, **at_rest, seconds_per_sample=1e-9 * k) for k, name in enumerate(names, 1)]
+    assert told(*rows)[0].startswith("Take local-quintic: ")
+
+
+def test_every_number_is_a_quote() -> None:
+    table = table_of(row("a", torque=1.04), row("b", **GLOBAL), row("d3", failure="3 keyframes"))
+    found = [*advice.recommendation(table)]
+    assert len(found) == 3
+    for finding in found:
+        typed = "".join(part for part in finding.parts if isinstance(part, str))
+        assert not re.search(r"\d", typed.replace("C", "")), typed
+
+
+def test_timings_do_not_change_what_is_said() -> None:
+    """Ten runs, as far as the clock tells them apart, on a machine that others use, too."""
+    names = ["local-quintic", "kim", "log-cubic", "quartic", "nielson", "squad", "min-torque"]
+    table, rng = qs.compare(None, walk(9, 50.0, seed=1), names), np.random.default_rng(0)
+    table[TIMES] = [1e-5, 1e-8]  # as they were seen on a quiet machine
+    said = [finding.text for finding in advice.recommendation(table)]
+    for _ in range(10):
+        noise = rng.uniform(0.2, 9.0, (len(table), len(TIMES)))
+        jittered = table.assign(
+            **dict(zip(TIMES, (table[TIMES].to_numpy() * noise).T, strict=True))
+        )
+        assert [finding.text for finding in advice.recommendation(jittered)] == said
+        assert advice.shown(jittered) == advice.shown(table)
