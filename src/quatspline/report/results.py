@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from quatspline import __version__
-from quatspline.trajectories.files import replacing
+from quatspline.atomic import replacing
 
 if TYPE_CHECKING:
     import pandas as pd

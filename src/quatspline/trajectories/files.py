@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import math
-import os
 import zipfile
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -14,6 +12,7 @@ from typing import Any, TextIO
 
 import numpy as np
 
+from quatspline.atomic import replacing
 from quatspline.keyframes import NORM_TOLERANCE, prepare
 from quatspline.options import nearest
 from quatspline.quaternion import FloatArray
@@ -125,21 +124,6 @@ def write_csv(stream: TextIO, motion: Motion) -> None:
 def check_suffix(path: str | Path) -> None:
     """Refuse a name whose suffix no format has, before any work is done."""
     _format(Path(path))
-
-
-@contextmanager
-def replacing(path: Path) -> Iterator[Path]:
-    """A path to write to, renamed onto ``path`` when the block ends well and removed otherwise."""
-    target = Path(os.path.realpath(path))
-    if target.exists() and not target.is_file():
-        yield target  # a device or a pipe: renaming would replace it
-        return
-    aside = target.with_name(f".{target.name}.{os.getpid()}.part")
-    try:
-        yield aside
-        os.replace(aside, target)
-    finally:
-        aside.unlink(missing_ok=True)
 
 
 def _format(path: Path) -> tuple[Reader, Writer]:
