@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from quatspline import registry, sweeps
 from quatspline.experiment import Experiment, Run, experiments, fingerprint, found, reason
+from quatspline.journal import Kept, forget
 from quatspline.report.results import PAGE, Journal, Results, now
 
 if TYPE_CHECKING:
@@ -100,7 +101,7 @@ def _run_or_keep(experiment: Experiment, run: Run, results: Results, journal: Jo
     if kept is not None:
         _say(f"{name}: kept as finished by the interrupted run of {journal.content['start']}")
         results.record(name, kept)
-        sweeps.forget(results, name)
+        forget(results, name)
         return
     size = "quick" if run.quick else "full"
     entry: dict[str, Any] = {"title": experiment.title, "size": size, "seed": run.seed}
@@ -118,7 +119,7 @@ def _run_or_keep(experiment: Experiment, run: Run, results: Results, journal: Jo
         _say(f"{name}: failed: {entry['failure']}")
     else:
         journal.add(name, results.manifest["experiments"][name])
-        sweeps.forget(results, name)
+        forget(results, name)
         _say(f"{name}: done at {size} size in {entry['seconds']:.1f} s")
 
 
@@ -147,7 +148,7 @@ def _perform(experiment: Experiment, run: Run, results: Results) -> None:
 
 def _measured(name: str, module: ModuleType, run: Run, results: Results) -> Any:
     if callable(getattr(module, "cells", None)):
-        return sweeps.sweep(name, module, run, sweeps.Kept(results, name, fingerprint({name: run})))
+        return sweeps.sweep(name, module, run, Kept(results, name, fingerprint({name: run})))
     if callable(getattr(module, "measure", None)):
         return module.measure(run)
     if callable(getattr(module, "derive", None)):
