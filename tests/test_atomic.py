@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import os
 import secrets
+import shutil
 from pathlib import Path
 
 import pytest
 
-from quatspline import atomic
-from quatspline.atomic import clear_asides, replacing
+from quatspline.atomic import ASIDE, clear_asides, replacing, same_file
 
 
 @pytest.fixture(autouse=True)
@@ -56,7 +56,7 @@ def test_files_aside_of_others_are_neither_written_nor_removed(
         others, "foreign"
     )
     monkeypatch.setattr(secrets, "token_hex", lambda size: "taken")
-    taken = tmp_path / f".k.csv.taken{atomic.ASIDE}"
+    taken = tmp_path / ".k.csv.taken.part"
     taken.write_text("foreign")
     with pytest.raises(FileExistsError), replacing(tmp_path / "k.csv"):
         pass
@@ -73,10 +73,9 @@ def test_two_writers_of_one_name_do_not_meet(tmp_path: Path) -> None:
 
 
 def test_what_a_killed_writer_left_is_cleared(tmp_path: Path) -> None:
-    with replacing(tmp_path / "k") as aside:
+    with replacing(tmp_path / "k", ASIDE) as aside:
         aside.write_text("half")
-        (tmp_path / f"{aside.name}").rename(tmp_path / f".k.0{atomic.ASIDE}")
-        (tmp_path / aside.name).write_text("whole")
+        shutil.copy(aside, tmp_path / f".k.0{ASIDE}")
     clear_asides(tmp_path)
     assert os.listdir(tmp_path) == ["k"]
 
@@ -86,3 +85,19 @@ def test_a_long_name_leaves_room_for_the_one_aside(tmp_path: Path) -> None:
     with replacing(path) as aside:
         aside.write_text("x")
     assert path.read_text() == "x"
+
+
+def test_one_file_is_known_through_links_and_roundabout_paths(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "k.csv"
+    path.write_text("x")
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "soft.csv").symlink_to(path)
+    os.link(path, tmp_path / "hard.csv")
+    monkeypatch.chdir(tmp_path)
+    for other in ("k.csv", "./sub/../k.csv", "soft.csv", "hard.csv", path):
+        assert same_file(other, path)
+    (tmp_path / "copy.csv").write_text("x")
+    assert not same_file("copy.csv", path)
+    assert not same_file("none.csv", path)

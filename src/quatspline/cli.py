@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from quatspline import __version__
+from quatspline.atomic import same_file
 
 if TYPE_CHECKING:
     from quatspline.registry import Found
@@ -113,6 +114,7 @@ def _add_run(commands: Any) -> None:
     size.add_argument("--quick", dest="size", action="store_const", const="quick")
     size.add_argument("--full", dest="size", action="store_const", const="full")
     run.add_argument("--out", type=Path, default=Path("results"), metavar="DIR", help="%(default)s")
+    _add_force(run)
     run.add_argument("--seed", type=_seed, default=0, metavar="N", help="%(default)s")
     where = run.add_mutually_exclusive_group()
     where.add_argument("--jobs", type=_count, metavar="N", help="processes; by default one a core")
@@ -126,6 +128,7 @@ def _add_compare(commands: Any) -> None:
     _add_schemes(compare)
     where = "for tables, figures and the page; by default KEYFRAMES-compared here"
     compare.add_argument("--out", type=Path, metavar="DIR", help=where)
+    _add_force(compare)
     compare.set_defaults(call=_compare)
 
 
@@ -149,6 +152,7 @@ def _add_report(commands: Any) -> None:
     report.add_argument(
         "--out", type=Path, default=Path("results"), metavar="DIR", help="%(default)s"
     )
+    _add_force(report)
     report.add_argument("--open", action="store_true", help="in the browser")
     report.set_defaults(call=_report)
 
@@ -163,6 +167,11 @@ def _add_keyframes(parser: argparse.ArgumentParser) -> None:
 def _add_schemes(parser: argparse.ArgumentParser) -> None:
     names = "names, by blanks or commas"
     parser.add_argument("--schemes", nargs="+", metavar="S", action="extend", help=names)
+
+
+def _add_force(parser: argparse.ArgumentParser) -> None:
+    replaced = "replace files that quatspline did not write, or that were edited since"
+    parser.add_argument("--force", action="store_true", help=replaced)
 
 
 def _number(kind: type, accepts: Callable[[Any], bool], wanted: str) -> Callable[[str], Any]:
@@ -236,25 +245,34 @@ def _run(arguments: argparse.Namespace) -> int:
         command=arguments.command,
         jobs=arguments.jobs,
         dask=arguments.dask,
+        force=arguments.force,
     )
     return FAILED if failed else DONE
 
 
 def _compare(arguments: argparse.Namespace) -> int:
     from quatspline import comparing
+    from quatspline.report.results import Results
 
     schemes = _schemes(arguments)  # a wrong name is told before a long file is read
     motion = _motion(arguments)
     out = arguments.out or Path(f"{Path(arguments.keyframes).stem}-compared")
-    return comparing.command(
-        motion, schemes=schemes, closed=arguments.closed, out=out, call=arguments.command
-    )
+    results = Results(out, force=arguments.force)
+    with results.writing():
+        results.guard(comparing.FILES, inputs=[arguments.keyframes])
+        return comparing.command(
+            motion,
+            schemes=schemes,
+            closed=arguments.closed,
+            results=results,
+            call=arguments.command,
+        )
 
 
 def _report(arguments: argparse.Namespace) -> int:
     from quatspline.report import page
 
-    return page.command(arguments.out, open_it=arguments.open)
+    return page.command(arguments.out, open_it=arguments.open, force=arguments.force)
 
 
 def _sample(arguments: argparse.Namespace) -> int:
@@ -264,6 +282,8 @@ def _sample(arguments: argparse.Namespace) -> int:
     registry.scheme(arguments.scheme)  # a wrong name is told before a long file is read
     if arguments.file is not None:
         files.check_suffix(arguments.file)
+        if same_file(arguments.keyframes, arguments.file):
+            raise ValueError(f"{arguments.file}: is read here, so it is not written over")
     motion = _motion(arguments)
     with _naming(arguments.keyframes):
         curve = registry.build(

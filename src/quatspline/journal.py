@@ -15,7 +15,7 @@ from contextlib import suppress
 from io import FileIO
 from typing import TYPE_CHECKING, Any
 
-from quatspline.atomic import replacing
+from quatspline.atomic import ASIDE, clear_asides, replacing
 
 if TYPE_CHECKING:
     from quatspline.report.results import Results
@@ -39,6 +39,7 @@ class Kept:
     def __init__(self, results: Results, name: str, fingerprint: str) -> None:
         self.path = results.folder / FOLDER / f"{name}.jsonl"
         self.path.parent.mkdir(exist_ok=True)
+        clear_asides(self.path.parent)
         self.fingerprint = fingerprint
         self.rows: dict[str, list[dict[str, Any]]] = {}
         for entry in self._entries(name):
@@ -52,7 +53,7 @@ class Kept:
         sound = {line: entry for line in lines if (entry := _entry(line)) is not None}
         whole = b"".join(line + b"\n" for line in sound)
         if whole != content:
-            with replacing(self.path) as aside:
+            with replacing(self.path, ASIDE) as aside:
                 aside.write_bytes(whole)
         if lost := sum(line not in sound for line in lines):
             what = "1 line is" if lost == 1 else f"{lost} lines are"

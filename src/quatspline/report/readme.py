@@ -15,7 +15,7 @@ from pathlib import Path
 from quatspline.registry import PACKAGE, found
 from quatspline.report import targets
 from quatspline.report.findings import lines, reader
-from quatspline.report.results import MANIFEST, read_json
+from quatspline.report.manifest import MANIFEST, read_json
 
 ROOT = PACKAGE.parents[1]
 REFERENCE = ROOT / "results" / "reference"
