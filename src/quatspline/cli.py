@@ -7,6 +7,7 @@ stderr; 130 interrupted.  Whatever is slow to import waits until a command needs
 from __future__ import annotations
 
 import argparse
+import errno
 import math
 import os
 import sys
@@ -25,6 +26,9 @@ if TYPE_CHECKING:
 
 DONE, FAILED, REFUSED, INTERRUPTED = 0, 1, 2, 130
 
+
+FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS}
+"""Errors that say all there is to say: a disk has no room, or may not be written any more."""
 
 MOST_SAMPLES = 50_000_000
 """More samples than this are a slip of the unit, and would not fit into memory."""
@@ -74,7 +78,8 @@ def _told(line: str, status: int) -> int:
 def _unforeseen(error: Exception) -> int:
     from quatspline.solving import ConvergenceError
 
-    if not isinstance(error, ConvergenceError):
+    full = isinstance(error, OSError) and error.errno in FULL
+    if not full and not isinstance(error, ConvergenceError):
         traceback.print_exception(error)
     return _told(f"{type(error).__name__}: {error}", FAILED)
 

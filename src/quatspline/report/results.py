@@ -91,8 +91,11 @@ class Results(Store):
 
     def sweep(self, name: str) -> None:
         """Remove outputs of an experiment that this run did not write: those of an earlier one."""
-        for file in set(self.outputs(name)) - self._written:
-            self.remove(file)
+        stale = {*self.outputs(name)}
+        if self.force:  # what a run that fails writes there, one that does not takes away
+            stale.add(f"{name}{OUTPUTS[-1]}")
+        for file in stale - self._written:
+            (self.folder / file).unlink(missing_ok=True)
 
     def record(self, name: str, entry: Mapping[str, Any]) -> None:
         """Enter what an experiment did, with the files that it has."""

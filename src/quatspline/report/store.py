@@ -139,11 +139,6 @@ class Store:
             aside.write_text(content, encoding="utf-8", newline="\n")
         return self.folder / name
 
-    def remove(self, name: str) -> None:
-        """Remove a file of the folder's own."""
-        if self.owns(name):
-            (self.folder / name).unlink()
-
     def intact(self, files: Mapping[str, str]) -> bool:
         """Whether files are all there with the given SHA-256."""
         paths = {self.folder / name: digest for name, digest in files.items()}
