@@ -252,6 +252,13 @@ def test_a_journal_does_not_trust_files_that_changed(results: Results, harm: str
     assert Journal(results, "print").finished("a") is None
 
 
+def test_a_journal_altered_by_a_digit_is_not_believed(results: Results) -> None:
+    Journal(results, "print").add("a", {"seconds": 12, "files": {}})
+    path = results.folder / ".journal.json"
+    path.write_text(path.read_text().replace("12", "13"))
+    assert Journal(results, "print").finished("a") is None
+
+
 def test_a_closed_journal_is_gone(results: Results) -> None:
     journal = Journal(results, "print")
     journal.add("a", {"files": {}})

@@ -66,9 +66,7 @@ def test_its_own_files_are_replaced_and_nothing_else_stays(folder: Path) -> None
     assert "claims" not in manifest(folder)
 
 
-@pytest.mark.parametrize(
-    "name", ["b.csv", "b.md", "report.html", "a.csv", "manifest.json", ".journal.json"]
-)
+@pytest.mark.parametrize("name", ["b.csv", "b.md", "report.html", "a.csv", "manifest.json"])
 @pytest.mark.parametrize("text", ["precious", "{}", '{"files": {}, "experiments": {}}', ""])
 def test_a_foreign_or_edited_file_is_replaced_by_force_only(
     folder: Path, name: str, text: str
@@ -85,8 +83,16 @@ def test_a_foreign_or_edited_file_is_replaced_by_force_only(
     assert contents(folder) == before
     run(folder, "a", "b", force=True)
     assert sorted(manifest(folder)["files"]) == ["a.csv", "a.md", "b.csv", "b.md", "report.html"]
-    (folder / store.JOURNAL).unlink(missing_ok=True)  # as a run does at its end
     run(folder, "a", "b")
+
+
+def test_a_journal_is_its_own_where_a_manifest_is(folder: Path) -> None:
+    (folder / store.JOURNAL).write_text("damaged")
+    run(folder, "a")
+    for name in ("manifest.json", *FILES):
+        (folder / name).unlink()
+    with pytest.raises(ValueError, match=r"out/\.journal\.json: not written by quatspline"):
+        run(folder, "a")
 
 
 def test_files_of_other_names_are_no_obstacle_and_are_not_listed(folder: Path) -> None:

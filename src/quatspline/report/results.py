@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -109,7 +111,7 @@ class Journal:
     def __init__(self, results: Results, fingerprint: str) -> None:
         self.results, self.path = results, results.folder / JOURNAL
         found = read_json(self.path)
-        same = found.get("fingerprint") == fingerprint
+        same = found.get("fingerprint") == fingerprint and found.pop("sum", None) == _sum(found)
         fresh = {"fingerprint": fingerprint, "start": now(), "finished": {}}
         self.content: dict[str, Any] = found if same else fresh
 
@@ -121,11 +123,16 @@ class Journal:
     def add(self, name: str, entry: Mapping[str, Any]) -> None:
         """Note that an experiment has finished."""
         self.content["finished"][name] = dict(entry)
-        write_json(self.path, self.content)
+        write_json(self.path, self.content | {"sum": _sum(self.content)})
 
     def close(self) -> None:
         """The run is complete: forget."""
         self.path.unlink(missing_ok=True)
+
+
+def _sum(content: Mapping[str, Any]) -> str:
+    """A checksum: an entry altered on the disk would enter the manifest."""
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
 def markdown(frame: pd.DataFrame, formats: Mapping[str, str] | None = None) -> str:

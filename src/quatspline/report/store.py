@@ -19,7 +19,6 @@ from quatspline.report.manifest import (
     MANIFEST,
     SCHEMA,
     listed,
-    read_json,
     read_manifest,
     sha256,
     write_json,
@@ -107,8 +106,8 @@ class Store:
             return False
         if name == MANIFEST:
             return not read_manifest(self.folder)
-        if name == JOURNAL:
-            return "fingerprint" not in read_json(path)
+        if name == JOURNAL:  # written too often to be listed; a run began by writing a manifest
+            return not self.manifest
         return not self.owns(name)
 
     # -- writing --------------------------------------------------------------------------------
