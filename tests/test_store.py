@@ -135,13 +135,29 @@ def test_a_manifest_of_the_first_release_names_its_files(folder: Path) -> None:
 
 
 @pytest.mark.parametrize("part", ["files", "experiments", "claims"])
-@pytest.mark.parametrize("value", [None, [], "x", {"a": 1}])
+@pytest.mark.parametrize("value", [None, [], "x", {"a": 1}, {"a": {"files": 3}}])
 def test_a_manifest_of_other_shapes_makes_no_file_its_own(
     folder: Path, part: str, value: object
 ) -> None:
     (folder / "manifest.json").write_text(json.dumps({"schema": store.SCHEMA, part: value}))
     with pytest.raises(ValueError, match=r"a\.csv and 2 more: not written by quatspline"):
         run(folder, "a")
+    run(folder, "a", force=True)
+    assert sorted(manifest(folder)["files"]) == FILES
+
+
+def test_a_file_claimed_by_a_killed_run_stays_its_own_through_a_report(folder: Path) -> None:
+    old = manifest(folder)
+    old |= {"claims": {"a.csv": old["files"].pop("a.csv")}}
+    del old["experiments"]["a"]
+    (folder / "manifest.json").write_text(json.dumps(old))
+    results = Results(folder)
+    with results.writing():
+        results.text("report.html", "2\n")
+        assert sorted(manifest(folder)["files"]) == FILES
+        results.refresh()
+    assert "claims" not in manifest(folder)
+    run(folder, "a")
 
 
 def test_what_came_while_it_ran_stays_and_nothing_measured_is_lost(folder: Path) -> None:

@@ -20,15 +20,25 @@ def read_manifest(folder: Path) -> dict[str, Any]:
     content = read_json(folder / MANIFEST)
     versions = content.get("versions")  # by which those of the first release are known
     marked = content.get("schema") == SCHEMA or "quatspline" in _object(versions)
-    return content if marked else {}
+    return _shaped(content) if marked else {}
+
+
+def _shaped(content: dict[str, Any]) -> dict[str, Any]:
+    """A manifest with objects where those are due; what is none says nothing."""
+    entries = _object(content.get("experiments"))
+    experiments = {name: entry for name, entry in entries.items() if isinstance(entry, dict)}
+    for entry in experiments.values():
+        entry |= {"files": _object(entry["files"])} if "files" in entry else {}
+    groups = {name: _object(content[name]) for name in ("files", "claims") if name in content}
+    return content | groups | {"experiments": experiments}
 
 
 def listed(manifest: Mapping[str, Any]) -> dict[str, set[str]]:
     """The SHA-256 under which files are a manifest's own: as they are, and as one was to become."""
-    groups = [manifest.get("files"), manifest.get("claims")]
-    groups += [_object(e).get("files") for e in _object(manifest.get("experiments")).values()]
+    groups = [manifest.get("files", {}), manifest.get("claims", {})]
+    groups += [entry.get("files", {}) for entry in manifest.get("experiments", {}).values()]
     own: dict[str, set[str]] = {}
-    for name, digest in (item for group in groups for item in _object(group).items()):
+    for name, digest in (item for group in groups for item in group.items()):
         own.setdefault(name, set()).add(str(digest))
     return own
 

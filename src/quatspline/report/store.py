@@ -51,6 +51,9 @@ class Store:
     def _load(self) -> None:
         self.manifest: dict[str, Any] = read_manifest(self.folder)
         self._own = listed(self.manifest)
+        for name in self.manifest.pop("claims", {}):  # of a writer that was killed
+            if self.owns(name):
+                self.manifest.setdefault("files", {})[name] = sha256(self.folder / name)
 
     @contextmanager
     def writing(self) -> Iterator[None]:
@@ -148,10 +151,8 @@ class Store:
     def begin(self, command: Sequence[str], *, seed: int | None = None, **more: Any) -> None:
         """Open the manifest of a run.  Entries of earlier runs stay while their files do."""
         self.guard()
-        earlier = self.manifest.get("experiments") or {}
-        kept = {
-            name: entry for name, entry in earlier.items() if self.intact(entry.get("files", {}))
-        }
+        earlier = self.manifest.get("experiments", {}).items()
+        kept = {name: entry for name, entry in earlier if self.intact(entry.get("files", {}))}
         files = {name: sha256(self.folder / name) for name in self._own if self.owns(name)}
         self.manifest = {"schema": SCHEMA, "command": list(command), "start": now(), "end": None}
         self.manifest |= provenance() | {"seeds": {"seed": seed}} | more
@@ -170,9 +171,9 @@ class Store:
 
     def _save(self, claims: Mapping[str, str]) -> None:
         """Write the manifest; claims are files that are about to be there."""
-        entries = dict(sorted((self.manifest.get("experiments") or {}).items()))
+        entries = dict(sorted(self.manifest.get("experiments", {}).items()))
         sizes = {name: entry["size"] for name, entry in entries.items() if "size" in entry}
-        files = dict(sorted((self.manifest.get("files") or {}).items()))
+        files = dict(sorted(self.manifest.get("files", {}).items()))
         there = {name: sha for name, sha in files.items() if (self.folder / name).is_file()}
         self.manifest |= {"sizes": sizes, "experiments": entries, "files": there}
         write_json(self.folder / MANIFEST, self.manifest | ({"claims": claims} if claims else {}))
