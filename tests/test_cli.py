@@ -651,6 +651,7 @@ def test_whatever_changed_is_measured_again(desk: Desk, change: str) -> None:
     if change == "lost":
         (desk.folder / "results" / "first.md").unlink()
     options = {"seed": ["--seed", "1"], "size": ["--full"], "schemes": ["--schemes", "quartic"]}
+    options["file"] = ["--force"]  # what was edited since is the user's
     done = desk("run", "first", "second", *options.get(change, []))
     assert done.returncode == 0, done.stderr
     assert desk.counted("first") == 2

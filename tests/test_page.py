@@ -119,7 +119,9 @@ def test_what_a_run_did_not_make_leaves_no_hole(elements: Elements, tmp_path: Pa
     Results(bare).table("x", pd.DataFrame({"a": [1]}))
     page = Elements(write_page(bare, scenes=[]).read_text(encoding="utf-8"))
     assert [a["id"] for tag, a, _ in page.items if tag == "section"] == ["other", "made"]
-    assert not (bare / "manifest.json").exists()
+    own = json.loads((bare / "manifest.json").read_text())["files"]
+    assert list(own) == ["report.html"]
+    write_page(bare, scenes=[])  # knows the page for its own
 
 
 def test_nothing_in_a_table_becomes_markup(html: str, elements: Elements) -> None:
@@ -156,12 +158,12 @@ def test_a_folder_without_tables_is_refused_in_one_line(
     assert not (tmp_path / "missing").exists()
 
 
-def refusal(folder: Path, capsys: pytest.CaptureFixture[str]) -> str:
+def refusal(folder: Path, capsys: pytest.CaptureFixture[str], left: bool = False) -> str:
     """The one line in which the command refuses a folder."""
     assert main(["report", "--out", str(folder)]) == 2
     told = capsys.readouterr().err
     assert len(told.splitlines()) == 1
-    assert not (folder / "report.html").exists()
+    assert (folder / "report.html").exists() == left
     return told.removeprefix("quatspline: ").removesuffix("\n")
 
 
@@ -247,7 +249,7 @@ def test_a_manifest_may_lack_what_is_not_known(spoilt: Path) -> None:
     bare = {"cpu": cpu, "end": None, "git": None, "experiments": None}
     for manifest in ({}, bare):
         (spoilt / "manifest.json").write_text(json.dumps(manifest))
-        text = write_page(spoilt).read_text(encoding="utf-8")
+        text = write_page(spoilt, force=True).read_text(encoding="utf-8")
         assert ("<dd>Abacus, 1 of 1 cores usable</dd>" in text) == bool(manifest)
 
 
@@ -379,10 +381,11 @@ def small(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "experiments" / "small.py").write_text(EXPERIMENT)
     monkeypatch.setenv("QUATSPLINE_EXPERIMENTS", str(tmp_path / "experiments"))
     monkeypatch.setattr(page_module, "paper_scenes", list)
-    out = tmp_path / "out"
-    out.mkdir()
-    (out / "report.html").write_text("stale")
-    return out
+    before = Results(tmp_path / "out")
+    before.begin(["quatspline", "run"])
+    before.text("report.html", "stale")
+    before.finish()
+    return before.folder
 
 
 def test_a_run_renews_the_page_that_is_there(small: Path) -> None:
@@ -392,6 +395,19 @@ def test_a_run_renews_the_page_that_is_there(small: Path) -> None:
     (small / "report.html").unlink()
     assert running.run(["small"], out=small) == []
     assert not (small / "report.html").exists()
+
+
+def test_a_run_leaves_a_page_that_is_not_its_own(
+    small: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    page = small / "report.html"
+    page.write_text("by hand")
+    assert running.run(["small"], out=small) == []
+    assert page.read_text() == "by hand"
+    assert f"{page}: not of this folder's runs, so it was left as it is" in capsys.readouterr().err
+    assert "report.html: not written by quatspline" in refusal(small, capsys, left=True)
+    assert main(["report", "--out", str(small), "--force"]) == 0
+    assert "csv-small" in page.read_text(encoding="utf-8")
 
 
 def test_the_command_writes_and_opens_the_page(

@@ -14,8 +14,9 @@ import pytest
 from matplotlib.figure import Figure
 
 import quatspline
-from quatspline.report import results as module
-from quatspline.report.results import Journal, Results, markdown, sha256
+from quatspline.report import provenance as module
+from quatspline.report.manifest import sha256
+from quatspline.report.results import Journal, Results, markdown
 
 
 @pytest.fixture
@@ -190,19 +191,10 @@ def test_entries_of_earlier_runs_stay_while_their_files_do(results: Results) -> 
     assert set(manifest(again)["files"]) == {"kept.csv", "kept.md", "edited.csv", "edited.md"}
 
 
-def test_a_broken_manifest_and_files_aside_are_cleared(results: Results) -> None:
-    (results.folder / "manifest.json").write_text('{"half')
-    (results.folder / ".table1.csv.123.part").write_text("half")
-    again = Results(results.folder)
-    again.begin(["x"])
-    assert os.listdir(results.folder) == ["manifest.json"]
-    assert manifest(again)["files"] == {}
-
-
 def test_git_is_told_for_a_checkout_of_our_own_only(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    source = tmp_path / "src" / "quatspline" / "report" / "results.py"
+    source = tmp_path / "src" / "quatspline" / "report" / "provenance.py"
     source.parent.mkdir(parents=True)
     source.write_text("")
     monkeypatch.setattr(module, "__file__", str(source))
@@ -219,13 +211,17 @@ def test_git_is_told_for_a_checkout_of_our_own_only(
 
 
 def test_sweep_removes_what_an_earlier_run_left(results: Results) -> None:
+    results.begin(["first"])
     results.table("a", table())
     results.text("a.error.txt", "old")
     results.text("ab.csv", "another experiment")
+    (results.folder / "a.png").write_text("of somebody else")
     again = Results(results.folder)
+    again.begin(["second"])
     again.table("a", table())
     again.sweep("a")
-    assert sorted(os.listdir(results.folder)) == ["a.csv", "a.md", "ab.csv"]
+    left = ["a.csv", "a.md", "a.png", "ab.csv", "manifest.json"]
+    assert sorted(os.listdir(results.folder)) == left
 
 
 def test_a_folder_that_cannot_be_made_is_refused(tmp_path: Path) -> None:
@@ -253,6 +249,13 @@ def test_a_journal_does_not_trust_files_that_changed(results: Results, harm: str
     journal.add("a", {"files": results.outputs("a")})
     path = results.folder / "a.md"
     path.write_text("edited") if harm == "edit" else path.unlink()
+    assert Journal(results, "print").finished("a") is None
+
+
+def test_a_journal_altered_by_a_digit_is_not_believed(results: Results) -> None:
+    Journal(results, "print").add("a", {"seconds": 12, "files": {}})
+    path = results.folder / ".journal.json"
+    path.write_text(path.read_text().replace("12", "13"))
     assert Journal(results, "print").finished("a") is None
 
 

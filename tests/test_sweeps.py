@@ -83,7 +83,7 @@ class Bench:
 
     def kept(self) -> int:
         path = self.out / ".cells" / "swept.jsonl"
-        return path.read_bytes().count(b"\n") - 1 if path.exists() else 0
+        return path.read_bytes().count(b"\n") if path.exists() else 0
 
 
 @pytest.fixture
@@ -153,7 +153,7 @@ def test_workers_find_folders_named_after_they_started(
 
 STOP = "if x == 3 and not (HERE / 'on').exists(): (HERE / 'on').touch(); {how}"
 """The cell that stops a run, the first time it is measured."""
-KEPT = "lambda: (HERE / 'results/.cells/swept.jsonl').read_bytes().count(b'\\n') > 1"
+KEPT = "lambda: any(b'\\n' in path.read_bytes() for path in HERE.glob('results/.cells/*.jsonl'))"
 """Whether a cell is kept, as a cell sees it."""
 
 
@@ -242,24 +242,33 @@ def test_a_cell_that_goes_wrong_is_told_and_the_others_are_kept(bench: Bench) ->
     assert bench.measured() == {**dict.fromkeys(range(COUNT), 1), 2: 3, 5: 3}
 
 
-def test_a_torn_line_is_dropped_and_the_next_stands_alone(tmp_path: Path) -> None:
-    results = Results(tmp_path)
-    kept = Kept(results, "swept", "print")
-    kept.add({"x": 1}, '[{"v": 0.1}]')
-    kept.add({"x": 2}, '[{"v": NaN}]')
-    with kept.path.open("rb+") as stream:
-        stream.truncate(kept.path.stat().st_size - 5)
-    again = Kept(results, "swept", "print")
-    assert again.rows == {'{"x": 1}': [{"v": 0.1}]}
-    again.add({"x": 3}, "[]")
-    assert set(Kept(results, "swept", "print").rows) == {'{"x": 1}', '{"x": 3}'}
+def test_a_digit_changed_in_a_kept_cell_does_not_reach_the_table(
+    bench: Bench, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bench.experiment(STOP.format(how="raise KeyboardInterrupt"), serial=True)
+    with pytest.raises(KeyboardInterrupt):
+        bench.run()
+    path = bench.out / ".cells" / "swept.jsonl"
+    first, rest = path.read_text().split("\n", 1)
+    path.write_text(first.replace('"x": 7', '"x": 6') + "\n" + rest)
+    assert bench.run() == []
+    said = capsys.readouterr().err
+    assert "swept: 1 line is damaged in the journal of cells" in said
+    assert f"swept: {COUNT - 5} of {COUNT} cells kept" in said
+    assert bench.measured() == {**dict.fromkeys(range(COUNT), 1), 7: 2, 3: 2}
+    table = bench.table()
+    assert bench.run() == []
+    assert bench.table() == table
 
 
-def test_cells_of_other_sources_or_options_do_not_count(tmp_path: Path) -> None:
-    results = Results(tmp_path)
-    Kept(results, "swept", "print").add({"x": 1}, "[]")
-    assert Kept(results, "swept", "other").rows == {}
-    assert Kept(results, "swept", "print").rows == {}
+def test_another_run_in_between_costs_no_cell(bench: Bench) -> None:
+    bench.experiment("assert x != 3 or (HERE / 'on').exists()", serial=True)
+    for seed in (0, 1):
+        assert bench.run(seed=seed) == ["swept"]
+    (bench.folder / "on").touch()
+    before = bench.measured()
+    assert bench.run(seed=0) == []
+    assert bench.measured() - before == {3: 1}
 
 
 def test_cells_that_cannot_be_told_apart_are_refused(bench: Bench) -> None:

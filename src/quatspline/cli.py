@@ -7,6 +7,7 @@ stderr; 130 interrupted.  Whatever is slow to import waits until a command needs
 from __future__ import annotations
 
 import argparse
+import errno
 import math
 import os
 import sys
@@ -17,6 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
 from quatspline import __version__
+from quatspline.atomic import same_file
 
 if TYPE_CHECKING:
     from quatspline.registry import Found
@@ -24,6 +26,9 @@ if TYPE_CHECKING:
 
 DONE, FAILED, REFUSED, INTERRUPTED = 0, 1, 2, 130
 
+
+FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS}
+"""Errors that say all there is to say: a disk has no room, or may not be written any more."""
 
 CLAIMS: tuple[tuple[str, Callable[[Any], Any]], ...] = (
     ("C^k", lambda s: f"C{s.continuity}"),
@@ -74,7 +79,8 @@ def _note(line: str) -> None:
 def _unforeseen(error: Exception) -> int:
     from quatspline.solving import ConvergenceError
 
-    if not isinstance(error, ConvergenceError):
+    full = isinstance(error, OSError) and error.errno in FULL
+    if not full and not isinstance(error, ConvergenceError):
         traceback.print_exception(error)
     return _told(f"{type(error).__name__}: {error}", FAILED)
 
@@ -114,6 +120,7 @@ def _add_run(commands: Any) -> None:
     size.add_argument("--quick", dest="size", action="store_const", const="quick")
     size.add_argument("--full", dest="size", action="store_const", const="full")
     run.add_argument("--out", type=Path, default=Path("results"), metavar="DIR", help="%(default)s")
+    _add_force(run)
     run.add_argument("--seed", type=_seed, default=0, metavar="N", help="%(default)s")
     where = run.add_mutually_exclusive_group()
     where.add_argument("--jobs", type=_count, metavar="N", help="processes; by default one a core")
@@ -127,6 +134,7 @@ def _add_compare(commands: Any) -> None:
     _add_schemes(compare)
     where = "for tables, figures and the page; by default KEYFRAMES-compared here"
     compare.add_argument("--out", type=Path, metavar="DIR", help=where)
+    _add_force(compare)
     compare.set_defaults(call=_compare)
 
 
@@ -150,6 +158,7 @@ def _add_report(commands: Any) -> None:
     report.add_argument(
         "--out", type=Path, default=Path("results"), metavar="DIR", help="%(default)s"
     )
+    _add_force(report)
     report.add_argument("--open", action="store_true", help="in the browser")
     report.set_defaults(call=_report)
 
@@ -167,6 +176,11 @@ def _add_keyframes(parser: argparse.ArgumentParser, nargs: Literal["?"] | None =
 def _add_schemes(parser: argparse.ArgumentParser) -> None:
     names = "names, by blanks or commas"
     parser.add_argument("--schemes", nargs="+", metavar="S", action="append", help=names)
+
+
+def _add_force(parser: argparse.ArgumentParser) -> None:
+    replaced = "replace files that quatspline did not write, or that were edited since"
+    parser.add_argument("--force", action="store_true", help=replaced)
 
 
 def _number(kind: type, accepts: Callable[[Any], bool], wanted: str) -> Callable[[str], Any]:
@@ -229,26 +243,35 @@ def _run(arguments: argparse.Namespace) -> int:
         command=arguments.command,
         jobs=arguments.jobs,
         dask=arguments.dask,
+        force=arguments.force,
     )
     return FAILED if failed else DONE
 
 
 def _compare(arguments: argparse.Namespace) -> int:
     from quatspline import comparing, words
+    from quatspline.report.results import Results
 
     # A wrong name is told before a long file is read.
     arguments.keyframes, schemes = words.of_compare(arguments.keyframes, arguments.schemes)
     motion = _motion(arguments)
     out = arguments.out or Path(f"{Path(arguments.keyframes).stem}-compared")
-    return comparing.command(
-        motion, schemes=schemes, closed=arguments.closed, out=out, call=arguments.command
-    )
+    results = Results(out, force=arguments.force)
+    with results.writing():
+        results.guard(comparing.FILES, inputs=[arguments.keyframes])
+        return comparing.command(
+            motion,
+            schemes=schemes,
+            closed=arguments.closed,
+            results=results,
+            call=arguments.command,
+        )
 
 
 def _report(arguments: argparse.Namespace) -> int:
     from quatspline.report import page
 
-    return page.command(arguments.out, open_it=arguments.open)
+    return page.command(arguments.out, open_it=arguments.open, force=arguments.force)
 
 
 def _sample(arguments: argparse.Namespace) -> int:
@@ -259,6 +282,8 @@ def _sample(arguments: argparse.Namespace) -> int:
     registry.scheme(arguments.scheme)  # a wrong name is told before a long file is read
     if arguments.file is not None:
         files.check_suffix(arguments.file)
+        if same_file(arguments.keyframes, arguments.file):
+            raise ValueError(f"{arguments.file}: is read here, so it is not written over")
     motion = _motion(arguments)
     with _naming(arguments.keyframes):
         curve = registry.build(

@@ -7,7 +7,6 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -30,6 +29,7 @@ from quatspline.registry import scheme, schemes
 if TYPE_CHECKING:
     import pandas as pd
 
+    from quatspline.report.results import Results
     from quatspline.trajectories.files import Motion
 
 TOLERANCE = 1e-9
@@ -47,6 +47,12 @@ NOTE = (
     "Iterative schemes solve to 1e-9. Every segment is measured, however many there are; failure says why a scheme was "
     "not. Compare seconds within this table only."
 )
+FILES = [
+    *(f"compare{end}" for end in (".csv", ".md", ".png", ".svg", ".caption.txt")),
+    *(f"rates{end}" for end in (".png", ".svg", ".caption.txt")),
+    *("recommendation.md", "report.html"),
+]
+"""What the command writes."""
 BARS = "Torque energy over the least of all schemes compared; hollow: not C2 as measured here.\n"
 RATES = "Norms of the angular velocity and acceleration over time; grey lines are keyframes.\n"
 FORMATS = {
@@ -240,7 +246,7 @@ def command(
     *,
     schemes: Sequence[str] | None,
     closed: bool,
-    out: Path,
+    results: Results,
     call: Sequence[str] = (),
 ) -> int:
     """Serve ``quatspline compare``: tables, figures, the recommendation and the page in a folder.
@@ -248,20 +254,18 @@ def command(
     Raises
     ------
     ValueError
-        On bad keyframes, an unknown scheme, or a folder that cannot be made.
+        On bad keyframes, an unknown scheme, or files in the folder that are not its own.
     """
     import matplotlib as mpl
 
     from quatspline.report import advice, style
     from quatspline.report.page import own_scene, write_page
     from quatspline.report.page.sections import OWN
-    from quatspline.report.results import Results
 
     mpl.use("Agg")  # nothing here may open a window
 
     began = time.perf_counter()
     keyframes = _prepared(motion.times, motion.quaternions, closed)
-    results = Results(out)
     results.begin(call, schemes=list(schemes) if schemes is not None else None)
     table, curves = _compared(keyframes, schemes)
     table = results.table("compare", table, title=TITLE, note=NOTE, formats=FORMATS, keys=[])
@@ -277,7 +281,7 @@ def command(
     results.record("compare", entry | {"seconds": round(time.perf_counter() - began, 3)})
     results.finish()
     scene = own_scene("own", "Your keyframes", keyframes, motion.positions, names)
-    page = write_page(out, title=TITLE, scenes=[scene], sections=OWN, findings=found)
+    page = write_page(results, title=TITLE, scenes=[scene], sections=OWN, findings=found)
     for line in advice.lines(found):
         print(line)
     print(page, file=sys.stderr)

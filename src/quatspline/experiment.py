@@ -32,7 +32,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from quatspline import registry
 from quatspline.options import nearest
-from quatspline.report.results import cpu_model, versions
+from quatspline.report.provenance import cpu_model, versions
 
 if TYPE_CHECKING:
     import numpy as np
@@ -96,6 +96,13 @@ class Experiment:
     def derived(self) -> bool:
         """Whether it is made of the tables of others."""
         return callable(getattr(self.module, "derive", None))
+
+    @property
+    def outputs(self) -> list[str]:
+        """How the names of the files that it may write end."""
+        drawn = {"draw": [".png", ".svg"], "caption": [".caption.txt"]}
+        more = [end for name, ends in drawn.items() if hasattr(self.module, name) for end in ends]
+        return [".csv", ".md", *more, ".error.txt"]
 
     @property
     def title(self) -> str:

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from quatspline import registry, sweeps
 from quatspline.experiment import Experiment, Run, experiments, fingerprint, found, reason
-from quatspline.report.results import PAGE, Journal, Results, now
+from quatspline.journal import Kept, forget
+from quatspline.report.results import JOURNAL, PAGE, Journal, Results, now
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -32,6 +33,7 @@ def run(
     command: Sequence[str] = (),
     jobs: int | None = None,
     dask: str | None = None,
+    force: bool = False,
 ) -> list[str]:
     """Run experiments into a results directory and return the names of those that failed.
 
@@ -39,8 +41,10 @@ def run(
     options and sources had finished is kept.  ``size`` is by default full for the paper's, quick
     for the others.  Cells are measured by ``jobs`` processes, by default one a core, or by the Dask
     scheduler at an address.  A run of all experiments ends with derived tables and the page, and so
-    does any into a folder that has them.  Raises ValueError for unknown or unusable names, for ``schemes`` without
-    one, and without a scheduler.
+    does any into a folder that has them.  Files that are not the folder's own are replaced only
+    with ``force``.  Raises ValueError for unknown or unusable names, for ``schemes`` without one,
+    without a scheduler, and, before anything is measured, for a folder that another process writes
+    to or that has foreign files of the names to be written.
     """
     if schemes is not None and not schemes:
         raise ValueError("schemes: no name given")
@@ -51,21 +55,27 @@ def run(
         for e in chosen
     }
     with sweeps.workers(jobs, dask):
-        results = Results(out)
-        for experiment, as_before in _outdated(chosen, results):
-            chosen.append(experiment)
-            runs[experiment.name] = as_before
-        journal = Journal(results, fingerprint(runs))
-        results.begin(command, seed=seed, schemes=picked)
-        for experiment in chosen:
-            _run_or_keep(experiment, runs[experiment.name], results, journal)
-    results.finish()
-    journal.close()
-    failed = [e.name for e in chosen if results.manifest["experiments"][e.name]["failure"]]
-    # As derived tables, a page that is there already must not show what the others no longer say.
-    if not names or (results.folder / PAGE).is_file():
-        failed += _write_page(results)
+        results = Results(out, force=force)
+        with results.writing():
+            for experiment, as_before in _outdated(chosen, results):
+                chosen.append(experiment)
+                runs[experiment.name] = as_before
+            results.guard(_outputs(chosen, page=not names))
+            journal = Journal(results, fingerprint(runs))
+            results.begin(command, seed=seed, schemes=picked)
+            for experiment in chosen:
+                _run_or_keep(experiment, runs[experiment.name], results, journal)
+            results.finish()
+            journal.close()
+            failed = [e.name for e in chosen if results.manifest["experiments"][e.name]["failure"]]
+            failed += _write_page(results, asked=not names)
     return failed
+
+
+def _outputs(chosen: Sequence[Experiment], *, page: bool) -> list[str]:
+    """The files that a run may write, as far as that can be told before."""
+    files = [f"{e.name}{end}" for e in chosen for end in e.outputs]
+    return [*files, PAGE, JOURNAL] if page else [*files, JOURNAL]
 
 
 def _outdated(chosen: Sequence[Experiment], results: Results) -> list[tuple[Experiment, Run]]:
@@ -79,12 +89,20 @@ def _outdated(chosen: Sequence[Experiment], results: Results) -> list[tuple[Expe
     ]
 
 
-def _write_page(results: Results) -> list[str]:
-    """Write the page of all tables in the folder; its name if that fails, for they are worth more."""
+def _write_page(results: Results, *, asked: bool) -> list[str]:
+    """Write the page of all tables in the folder; its name if that fails, for they are worth more.
+
+    As derived tables, a page that is there already must not show what others no longer say.
+    """
+    page = results.folder / PAGE
+    if not asked and not results.owns(PAGE):
+        if page.exists():
+            _say(f"{page}: not of this folder's runs, so it was left as it is")
+        return []
     from quatspline.report.page import write_page
 
     try:
-        _say(f"{write_page(results.folder)}: written")
+        _say(f"{write_page(results)}: written")
     except Exception as error:
         _say(f"{PAGE}: failed: {reason(error)}")
         return [PAGE]
@@ -100,7 +118,7 @@ def _run_or_keep(experiment: Experiment, run: Run, results: Results, journal: Jo
     if kept is not None:
         _say(f"{name}: kept as finished by the interrupted run of {journal.content['start']}")
         results.record(name, kept)
-        sweeps.forget(results, name)
+        forget(results, name)
         return
     size = "quick" if run.quick else "full"
     entry: dict[str, Any] = {"title": experiment.title, "size": size, "seed": run.seed}
@@ -118,7 +136,7 @@ def _run_or_keep(experiment: Experiment, run: Run, results: Results, journal: Jo
         _say(f"{name}: failed: {entry['failure']}")
     else:
         journal.add(name, results.manifest["experiments"][name])
-        sweeps.forget(results, name)
+        forget(results, name)
         _say(f"{name}: done at {size} size in {entry['seconds']:.1f} s")
 
 
@@ -147,7 +165,7 @@ def _perform(experiment: Experiment, run: Run, results: Results) -> None:
 
 def _measured(name: str, module: ModuleType, run: Run, results: Results) -> Any:
     if callable(getattr(module, "cells", None)):
-        return sweeps.sweep(name, module, run, sweeps.Kept(results, name, fingerprint({name: run})))
+        return sweeps.sweep(name, module, run, Kept(results, name, fingerprint({name: run})))
     if callable(getattr(module, "measure", None)):
         return module.measure(run)
     if callable(getattr(module, "derive", None)):

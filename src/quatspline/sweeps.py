@@ -8,7 +8,7 @@ An experiment that varies something defines, instead of ``measure(run)``,
 ``SERIAL: bool``                             optional: its cells time something, so they run one
                                              after the other in this process
 
-A finished cell is appended to a file at once, and an interrupted run goes on with the others.  Rows
+A finished cell is appended to a journal at once, and an interrupted run goes on with the others.  Rows
 pass through JSON, which keeps every bit of a float, and stand in the order of the cells: the table
 does not depend on the number of workers or on interruptions.
 """
@@ -21,23 +21,20 @@ import os
 import sys
 import threading
 from collections.abc import Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager
 from functools import cache
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from quatspline import experiment, registry
 from quatspline.experiment import Run
-from quatspline.report.results import Results
+from quatspline.journal import Cell, Kept, key
 
 if TYPE_CHECKING:
     import pandas as pd
 
-FOLDER = ".cells"
 PATIENCE = 10.0
 """Seconds to wait for a Dask scheduler, and for its first worker."""
-
-Cell = dict[str, Any]
 
 
 class Done(NamedTuple):
@@ -46,47 +43,6 @@ class Done(NamedTuple):
     place: int
     rows: str
     problem: str | None = None
-
-
-class Kept:
-    """The finished cells of one experiment, a line of JSON each, appended as they finish.
-
-    Valid for one fingerprint only.  A line torn by a kill is dropped.
-    """
-
-    def __init__(self, results: Results, name: str, fingerprint: str) -> None:
-        self.path = results.folder / FOLDER / f"{name}.jsonl"
-        self.path.parent.mkdir(exist_ok=True)
-        first = json.dumps({"fingerprint": fingerprint})
-        content = self.path.read_bytes() if self.path.is_file() else b""
-        whole = content[: content.rfind(b"\n") + 1]
-        lines = whole.decode(errors="replace").splitlines()
-        if lines[:1] != [first]:
-            lines, whole = [first], f"{first}\n".encode()
-        self.path.write_bytes(whole)
-        self.rows: dict[str, list[dict[str, Any]]] = {}
-        for line in lines[1:]:
-            with suppress(ValueError, KeyError):
-                entry = json.loads(line)
-                self.rows[key(entry["cell"])] = entry["rows"]
-
-    def add(self, cell: Cell, rows: str) -> None:
-        """Keep a cell's rows: in the file before anything else can go wrong."""
-        with self.path.open("a", encoding="utf-8", newline="\n") as stream:
-            stream.write(f'{{"cell": {key(cell)}, "rows": {rows}}}\n')
-        self.rows[key(cell)] = json.loads(rows)
-
-
-def forget(results: Results, name: str) -> None:
-    """Remove an experiment's cells: its table is written."""
-    (results.folder / FOLDER / f"{name}.jsonl").unlink(missing_ok=True)
-    with suppress(OSError):  # other experiments' cells are in it, or it never was
-        (results.folder / FOLDER).rmdir()
-
-
-def key(cell: Cell) -> str:
-    """What tells a cell from others."""
-    return json.dumps(cell, sort_keys=True)
 
 
 # -- the sweep ----------------------------------------------------------------------------------

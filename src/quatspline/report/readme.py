@@ -12,10 +12,11 @@ import shutil
 from collections.abc import Callable
 from pathlib import Path
 
+from quatspline.atomic import replacing
 from quatspline.registry import PACKAGE, found
 from quatspline.report import targets
 from quatspline.report.findings import lines, reader
-from quatspline.report.results import MANIFEST, read_json
+from quatspline.report.manifest import MANIFEST, read_json
 
 ROOT = PACKAGE.parents[1]
 REFERENCE = ROOT / "results" / "reference"
@@ -120,7 +121,8 @@ def main() -> None:
     if arguments.adopt:
         adopt(arguments.adopt)
     for file in QUOTING:
-        file.write_text(renewed(file.read_text(encoding="utf-8")), encoding="utf-8")
+        with replacing(file) as aside:
+            aside.write_text(renewed(file.read_text(encoding="utf-8")), encoding="utf-8")
 
 
 if __name__ == "__main__":

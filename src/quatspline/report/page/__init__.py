@@ -8,25 +8,25 @@ from pathlib import Path
 
 from quatspline.report.findings import Finding
 from quatspline.report.page.document import document
-from quatspline.report.page.folder import Folder
+from quatspline.report.page.folder import Folder, existing
 from quatspline.report.page.motion import Scene, own_scene, paper_scenes
 from quatspline.report.page.sections import SECTIONS, Section
-from quatspline.report.results import MANIFEST, PAGE, Results
+from quatspline.report.results import PAGE, Results
 
 __all__ = ["PAGE", "Scene", "Section", "command", "own_scene", "paper_scenes", "write_page"]
 
 TITLE = "Orientation interpolation, measured"
 
 
-def command(results_folder: str | Path, *, open_it: bool = False) -> int:
+def command(results_folder: str | Path, *, open_it: bool = False, force: bool = False) -> int:
     """Serve ``quatspline report``: write the page of a results folder; open it in the browser if asked.
 
     Raises
     ------
     ValueError
-        The folder is not there or holds no table.
+        The folder is not there, holds no table, is being written or has a page that is not its own.
     """
-    path = write_page(results_folder)
+    path = write_page(results_folder, force=force)
     print(path)
     if open_it:
         webbrowser.open(path.resolve().as_uri())
@@ -34,8 +34,9 @@ def command(results_folder: str | Path, *, open_it: bool = False) -> int:
 
 
 def write_page(
-    folder: str | Path,
+    folder: str | Path | Results,
     *,
+    force: bool = False,
     title: str = TITLE,
     scenes: Sequence[Scene] | None = None,
     sections: Sequence[Section] = SECTIONS,
@@ -45,7 +46,8 @@ def write_page(
 
     Parameters
     ----------
-    folder : with the tables, figures and manifest of a run
+    folder : with the tables, figures and manifest of a run; `Results` where its writer asks
+    force : whether a page or a manifest that is not the folder's own may be replaced
     title : the page's heading
     scenes : motions for the player, by default the paper's two cases; see `own_scene`
     sections : what the page shows, in order; tables that none names come last
@@ -54,14 +56,15 @@ def write_page(
     Raises
     ------
     ValueError
-        The folder is not there or holds no table.
+        The folder is not there, holds no table, is being written or has a page that is not its own.
     """
-    found = Folder(Path(folder))
-    results = Results(folder)
+    results = folder if isinstance(folder, Results) else Results(existing(folder), force=force)
     shown = paper_scenes() if scenes is None else scenes
-    path = results.text(
-        PAGE, document(found, title=title, scenes=shown, parts=sections, said=findings)
-    )
-    if (results.folder / MANIFEST).is_file():
+    with results.writing():
+        found = Folder(results.folder)
+        results.guard([PAGE])
+        html = document(found, title=title, scenes=shown, parts=sections, said=findings)
+        results.refresh()  # a folder of tables alone gets a manifest by which its page is known
+        results.text(PAGE, html)
         results.refresh()
-    return path
+    return results.folder / PAGE

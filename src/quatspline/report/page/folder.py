@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from quatspline.report.findings import reader
-from quatspline.report.results import MANIFEST, json_object
+from quatspline.report.manifest import MANIFEST, json_object
 
 OWN_WORDS = {"table1": "Table 1", "edge-cases": "Edge cases"}
 """Names of tables that are not their name capitalised."""
@@ -73,9 +73,7 @@ class Folder:
     """
 
     def __init__(self, path: Path) -> None:
-        self.path = path
-        if not path.is_dir():
-            raise ValueError(f"{path}: no such folder; quatspline run makes it")
+        self.path = existing(path)
         self.frame = reader(path)
         if not self.tables:
             raise ValueError(f"{path}: no table in this folder; quatspline run writes them")
@@ -108,6 +106,13 @@ class Folder:
         fallback = OWN_WORDS.get(path.stem, path.stem.replace("-", " ").capitalize())
         text = path.read_bytes().decode("utf-8")  # as it is, for downloading
         return Table(path.stem, title or fallback, note, text)
+
+
+def existing(path: str | Path) -> Path:
+    """A folder that is there, or a ValueError."""
+    if not Path(path).is_dir():
+        raise ValueError(f"{path}: no such folder; quatspline run makes it")
+    return Path(path)
 
 
 def _read(path: Path) -> str:

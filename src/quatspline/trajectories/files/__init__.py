@@ -11,19 +11,19 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
+from quatspline.atomic import replacing
 from quatspline.options import nearest
 from quatspline.trajectories.files.columns import CSV_COLUMNS, TUM_COLUMNS
 from quatspline.trajectories.files.motion import KeyframeFileError, Motion
 from quatspline.trajectories.files.npz import read_npz
 from quatspline.trajectories.files.text import read_text
-from quatspline.trajectories.files.writing import replacing, write_csv, write_npz, write_tum
+from quatspline.trajectories.files.writing import write_csv, write_npz, write_tum
 
 __all__ = [
     "KeyframeFileError",
     "Motion",
     "check_suffix",
     "read",
-    "replacing",
     "write",
     "write_csv",
 ]

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -57,18 +54,3 @@ def _write_text(
         # The times apart: beside floats in one array, integers would become floats.
         rows = zip(t[part].tolist(), table[part].tolist(), strict=True)
         to.writelines(separator.join(map(repr, (time, *row))) + "\n" for time, row in rows)
-
-
-@contextmanager
-def replacing(path: Path) -> Iterator[Path]:
-    """A path to write to, renamed onto ``path`` when the block ends well and removed otherwise."""
-    target = Path(os.path.realpath(path))
-    if target.exists() and not target.is_file():
-        yield target  # a device or a pipe: renaming would replace it
-        return
-    aside = target.with_name(f".{target.name}.{os.getpid()}.part")
-    try:
-        yield aside
-        os.replace(aside, target)
-    finally:
-        aside.unlink(missing_ok=True)

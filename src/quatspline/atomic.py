@@ -1,0 +1,62 @@
+"""Files written whole or not at all: aside first, then renamed over what they replace."""
+
+from __future__ import annotations
+
+import os
+import secrets
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+PART = ".part"
+ASIDE = ".quatspline.part"
+"""How names of files aside end in a folder with one writer: what a killed one left is known by it."""
+
+SHOWN = 32
+"""Characters of the target's name that a file aside bears: a long name has room for no more."""
+
+
+@contextmanager
+def replacing(path: Path, end: str = PART) -> Iterator[Path]:
+    """A path to write to, renamed onto ``path`` when the block ends well and removed otherwise.
+
+    The file aside is new, in the target's folder, under a name that nobody else has.  It takes the
+    mode of the file that it replaces, a new one what the umask leaves; links are followed.  ``end`` is
+    how its name ends.
+    """
+    target = Path(os.path.realpath(path))
+    if target.exists() and not target.is_file():
+        yield target  # a device or a pipe: renaming would replace it
+        return
+    mode = target.stat().st_mode & 0o777 if target.exists() else None
+    aside = target.with_name(f".{target.name[:SHOWN]}.{secrets.token_hex(8)}{end}")
+    # Never wider than the target while it is written, but open to its writer.
+    aside.touch(mode=0o666 if mode is None else mode | 0o200, exist_ok=False)
+    try:
+        yield aside
+        _settle(aside, mode)
+        os.replace(aside, target)
+    finally:
+        aside.unlink(missing_ok=True)
+
+
+def _settle(aside: Path, mode: int | None) -> None:
+    """Have a finished file on the disk, with its final mode, before its name changes."""
+    with aside.open("rb+") as stream:
+        os.fsync(stream.fileno())
+    if mode is not None:
+        aside.chmod(mode)
+
+
+def clear_asides(folder: Path) -> None:
+    """Remove what killed writers left in a folder whose only writer this process is."""
+    for aside in folder.glob(f".*{ASIDE}"):
+        aside.unlink(missing_ok=True)
+
+
+def same_file(one: str | Path, other: str | Path) -> bool:
+    """Whether two paths lead to one file, through links of either kind or not."""
+    try:
+        return os.path.samefile(one, other)
+    except OSError:
+        return False
