@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-import quatspline.schemes
 from quatspline import keyframes as kf
 from quatspline import numeric, options, quaternion, solving, stamps
 from quatspline.inputs import FloatArray, at, real_array
@@ -20,11 +19,6 @@ from quatspline.solving import SolveReport
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
-
-# Importing the subpackage binds its name in the package, over the public function of that name.
-# It is bound once, at its first import: taken away here, before any scheme can be loaded.
-if not callable(quatspline.schemes):
-    del quatspline.schemes
 
 EDGE = 4
 """Samples this many ulp outside an open domain count as its end."""
