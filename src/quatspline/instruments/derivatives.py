@@ -46,9 +46,13 @@ def shape_rates(curve: Curve, t: FloatArray) -> tuple[FloatArray, FloatArray]:
 
     A peer's rates are a claim about its curve, so its orientations are differentiated.
     """
+    return rates_since(curve, curve._wrapped(np.asarray(t, dtype=float))[0])
+
+
+def rates_since(curve: Curve, since: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The same at times since the first keyframe: Unix times leave no digits inside a segment."""
     if closed_forms(curve):
-        return curve(t, 1), curve(t, 2)
-    since, _ = curve._wrapped(np.asarray(t, dtype=float))
+        return curve._velocity(since), curve._acceleration(since)
     return numeric.rates(curve._orientation, since, curve.keyframes.knots)
 
 

@@ -71,10 +71,21 @@ GLOSSARY: dict[str, Column] = {
     "exps": Column("exponentials for one keyframe or sample", "", "less"),
     "logs": Column("logarithms for one keyframe or sample", "", "less"),
     "slerps": Column("slerps for one keyframe or sample", "", "less"),
+    **{
+        f"table1.{operation}{part}": Column(f"{operation} executed{what}", "", "less")
+        for operation in ("exps", "logs", "slerps")
+        for part, what in {
+            "": " for all frames",
+            "_updates": " in updates and in the frames' samples",
+            "_rest": " in set-up and in the final residual",
+        }.items()
+    },
     "fairness.least": Column("least torque energy over the minimum", "", "less"),
     "fairness.median": Column("median of torque energy over the minimum", "", "less"),
     "fairness.q95": Column("95 % quantile of torque energy over the minimum", "", "less"),
     "fairness.worst": Column("worst torque energy over the minimum", "", "less"),
+    "worst_finite": Column("the same of sets where it is finite", "", "less"),
+    "jumping": Column("sets on which the velocity jumps or the curve leaps", "", "less"),
     "fairness.jerk_median": Column("median of jerk energy over that of the minimum", "", "less"),
     "fairness.length_median": Column("median of arc length over that of the minimum", "", "less"),
     "fairness.peak_median": Column(
