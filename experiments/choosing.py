@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from quatspline.instruments.operations import SET_UP, stated
 from quatspline.quaternion import FloatArray
 from quatspline.registry import found, version
 from quatspline.report import choosing, style
@@ -190,9 +191,9 @@ def _cost(table: pd.DataFrame) -> pd.DataFrame:
 def _all_counted(name: str, unit: str) -> bool:
     """Whether a scheme states what a unit takes, and in nothing but the operations added here."""
     item = found().get(name)
-    stated = item.scheme.operations if item is not None and item.scheme is not None else {}
-    per = [key.partition(" per ") for key in stated]
-    kinds = {operation for operation, _, of in per if of.split(" and ")[0] == unit}
+    operations = item.scheme.operations if item is not None and item.scheme is not None else {}
+    units = SET_UP if unit == "keyframe" else (unit,)
+    kinds = {entry.operation for entry in stated(operations) if entry.unit in units}
     return bool(kinds) and kinds <= set(COUNTED)
 
 
