@@ -219,6 +219,6 @@ def caption(table: pd.DataFrame) -> str:
         "Claims by verdict (red: departs, yellow: departs from what a publication says, which is that publication's "
         "fault, green: holds, pale: holds as far as tried at this size, grey: not measurable) with what was measured; "
         f"of {len(table)} in all, {', '.join(parts)}. Continuity is claimed once and tried under several step angles "
-        "and kinds of times. Rows are sorted by departures; other claims are those of publications and libraries about one "
-        "scheme (departures/all)."
+        "and kinds of times. Rows are sorted by departures; other claims are those of publications and libraries about "
+        "one scheme (departures/all)."
     )

@@ -98,6 +98,6 @@ def caption(table: pd.DataFrame) -> str:
     return (
         "What each scheme makes of edge cases. Numbers: how far off, over the largest step, where the result is wrong "
         "(yellow) or off only where the scheme claims nothing (pale green); 'error': refused or failed, with the "
-        "reason in the table. A scheme without a closed curve refuses the full turn, one of uniform times refuses others. "
-        "Rows are sorted by the number of cases without a fault."
+        "reason in the table. A scheme without a closed curve refuses the full turn, one of uniform times refuses "
+        "others. Rows are sorted by the number of cases without a fault."
     )

@@ -72,13 +72,13 @@ GLOSSARY: dict[str, Column] = {
     "logs": Column("logarithms for one keyframe or sample", "", "less"),
     "slerps": Column("slerps for one keyframe or sample", "", "less"),
     **{
-        f"table1.{operation}{part}": Column(f"{operation} executed{what}", "", "less")
+        f"{table}{operation}{part}": Column(f"{operation} executed {what}", "", "less")
         for operation in ("exps", "logs", "slerps")
-        for part, what in {
-            "": " for all frames",
-            "_updates": " in updates and in the frames' samples",
-            "_rest": " in set-up and in the final residual",
-        }.items()
+        for table, part, what in (
+            ("table1.", "", "for all frames"),
+            ("", "_updates", "in updates and in the frames' samples"),
+            ("", "_rest", "in set-up and in the final residual"),
+        )
     },
     "fairness.least": Column("least torque energy over the minimum", "", "less"),
     "fairness.median": Column("median of torque energy over the minimum", "", "less"),
