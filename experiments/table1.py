@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from quatspline.curve import Curve
-from quatspline.instruments.operations import executed, iterations
+from quatspline.instruments.operations import OPERATIONS, executed, iterations
 from quatspline.instruments.protocols import PROTOCOLS, Protocol, frames
 from quatspline.instruments.timing import Contender, interleaved
 from quatspline.instruments.trials import reason
@@ -34,6 +34,8 @@ FORMATS = {
     "paper_seconds": "g",
     "tolerance": "g",
 }
+APART = [f"{operation}_{part}" for operation in OPERATIONS for part in ("updates", "rest")]
+"""Columns of the counts in two parts, after all others."""
 ROUNDS, RENDERED_ROUNDS = 15, 2
 
 
@@ -119,20 +121,16 @@ def _timed(
     quartic = timings["quartic"].median
     rows = []
     for name, timing in timings.items():
-        rows.append(
-            {
-                "case": label,
-                "frames": row.frames,
-                "scheme": name,
-                "protocol": protocol,
-                **_counts(case, row.frames, protocol, name),
-                "seconds_median": timing.median,
-                "seconds_iqr": timing.iqr,
-                "repeats": timing.rounds * timing.loops,
-                "ratio_to_quartic": timing.median / quartic,
-                **_papers(row, name),
-            }
-        )
+        base = {"case": label, "frames": row.frames, "scheme": name, "protocol": protocol}
+        counts = _counts(case, row.frames, protocol, name)
+        apart = {key: counts.pop(key) for key in APART}
+        measured = {
+            "seconds_median": timing.median,
+            "seconds_iqr": timing.iqr,
+            "repeats": timing.rounds * timing.loops,
+            "ratio_to_quartic": timing.median / quartic,
+        }
+        rows.append(base | counts | measured | _papers(row, name) | apart)
     return pd.DataFrame(rows)
 
 
