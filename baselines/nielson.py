@@ -45,7 +45,13 @@ class Nielson(SegmentCurve):
     constant_rate = "everywhere"
     iterative = True
     family = TRIANGLE
-    operations = {"slerps per sample": 6, "slerps per keyframe and iteration": 2}
+    operations = {
+        "slerps per sample": 6,
+        "slerps per inner keyframe and iteration": 2,
+        "slerps per inner keyframe": 3,
+        "slerps per segment": 2,
+        "logs per segment": 3,
+    }
 
     def _fit(
         self,
@@ -69,6 +75,11 @@ class Nielson(SegmentCurve):
             self.order = 2
         if ends == "stationary" or (nu > 0.0).any():
             self.constant_rate = "no"
+        if stop == "residual":  # a residual, of 3 slerps, before the first update and after each
+            more = {"inner keyframe and iteration": 5, "inner keyframe": 6}
+            self.operations = type(self).operations | {
+                f"slerps per {k}": n for k, n in more.items()
+            }
         switches = [method == "jacobi", stop == "residual", tolerance, max_iterations]
         parameters = np.array([*switches, ends == "stationary", *nu], dtype=float)
         self._report(method, stop, tolerance, self._solve(FIT, parameters), on_failure)

@@ -91,7 +91,7 @@ class Curve(abc.ABC):
     operations: dict[str, float] = {}
     """Counts that no machine changes: e.g. {"exps per sample": 3, "logs per keyframe": 1}."""
     departs: ClassVar[dict[str, str]] = {}
-    """Conformance checks that a peer, run as published, does not pass, each with its reason."""
+    """Conformance checks that a scheme does not pass, a peer run as published as a rule, each with its reason."""
     batched: ClassVar[bool] = False
     """Whether `_fit` and the evaluation take all tracks at once."""
 
