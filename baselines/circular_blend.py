@@ -109,6 +109,8 @@ def _circle(a, b, c):
 def _great(a, b, c):
     """The great circle through b and the farther of a and c, for triples that hold two points."""
     ba, bc = combine(1.0, a, -1.0, b), combine(1.0, c, -1.0, b)
+    if max(dot(ba, ba), dot(bc, bc)) < SAME * SAME:  # a point
+        return combine(0.0, b, 0.0, b), combine(-1.0, b, 0.0, b), 0.0, 0.0
     far = c if dot(bc, bc) >= dot(ba, ba) else a
     x = unit(combine(1.0, far, -dot(far, b), b))
     x = unit(combine(1.0, x, -dot(x, b), b))  # twice: b may be nearly its antipode

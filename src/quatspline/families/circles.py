@@ -107,9 +107,9 @@ def BIARC_ORIENTATION(sheet, n):
     for j in range(n):
         u = s[0, j]
         if u < s[_SPLIT, j]:
-            _result(s, j, _point(s, _FIRST, j, u))
+            _result(s, j, unit(_point(s, _FIRST, j, u)))
         else:
-            _result(s, j, _point(s, _SECOND, j, u))
+            _result(s, j, unit(_point(s, _SECOND, j, u)))
 
 
 @compiled

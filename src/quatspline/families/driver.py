@@ -51,7 +51,18 @@ def described(knots: FloatArray, segments: FloatArray, signs: FloatArray, closed
     """A curve as the driver takes it: addresses and lengths of its arrays, which must be kept alive.
 
     knots (count + 1,) since the first keyframe, segments (K, count, constants), signs (K,).
+
+    Raises
+    ------
+    ValueError
+        Where they do not fit together: arrays made of addresses have no bounds that anything checks.
     """
+    shapes = knots.shape, segments.shape[:2], signs.shape
+    if shapes != ((segments.shape[1] + 1,), (signs.size, segments.shape[1]), (signs.size,)):
+        raise ValueError(f"knots, segments and signs have shapes {shapes}: they do not fit")
+    for array in (knots, segments, signs):
+        if array.dtype != np.float64 or not array.flags.c_contiguous:
+            raise ValueError("knots, segments and signs: C-contiguous float64 is expected")
     places = np.empty(CLOSED + 1, np.int64)
     _describe(knots, segments, signs, closed, places)
     return places
@@ -68,6 +79,10 @@ def _describe(knots, segments, signs, closed, places):
 def fit_tracks(address, tracks, h, closed, signs, parameters, segments, report):
     """Call a fit kernel on every track (K, n, 4); the largest reach that they report."""
     reach = 0.0
+    if not tracks.shape[0] == segments.shape[0] == report.shape[0] == signs.size:
+        raise ValueError("tracks, segments, report and signs: one of each per track is expected")
+    if segments.shape[1] % h.size or tracks.shape[1] + closed != h.size + 1:
+        raise ValueError("spacings: one from each keyframe to the next is expected")
     for k in range(tracks.shape[0]):
         call_fit(address, tracks[k], h, closed, signs[k], parameters, segments[k], report[k])
         reach = max(reach, report[k, REACH])
@@ -85,6 +100,8 @@ def sample(address, order, curve, origin, slack, t, out):
     segments = carray(at_address(curve[SEGMENTS]), (tracks, count, curve[CONSTANT_COUNT]))
     signs = carray(at_address(curve[SIGNS]), (tracks,))
     width = 3 if order else 4
+    if out.size != width * tracks * t.size:
+        raise ValueError("out has another size than the samples")
     pointer = on_stack(SHEET)
     sheet = carray(pointer, (ROWS, BLOCK))
     u = carray(on_stack(BATCH), (BATCH,))

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from quatspline._jit import CHANGE, ITERATIONS, RESIDUAL, Kernel
+from quatspline._jit import CHANGE, CONSTANTS, ITERATIONS, RESIDUAL, RESULT, Kernel
 from quatspline.curve import Curve
 from quatspline.families.driver import described, fit_tracks, sample
 from quatspline.primitives import NEAR
@@ -47,6 +47,12 @@ class Family:
     constants: int
     near: tuple[Kernel, Kernel, Kernel]
     far: tuple[Kernel, Kernel, Kernel]
+
+    def __post_init__(self) -> None:
+        if self.constants > RESULT - CONSTANTS:  # kernels would write into the result's rows
+            raise ValueError(
+                f"{self.constants} constants per segment: a sheet has {RESULT - CONSTANTS} rows for them"
+            )
 
 
 class SegmentCurve(Curve):
