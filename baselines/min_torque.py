@@ -12,6 +12,10 @@ from quatspline.keyframes import Keyframes
 from quatspline.options import Count, OnFailure, Positive
 from quatspline.schemes.local_quintic import LocalQuinticSpline
 
+HIT = 1e-9
+"""Largest miss at a keyframe in rad, where the tolerance is less: keyframes are nodes, so that a miss
+is rounding, magnified where a turn between nodes is nearly a full one."""
+
 
 class MinimumTorqueSpline(SegmentCurve):
     """Minimum-torque interpolant: least integral of |alpha|^2, free ends [barr1992; park1997].
@@ -33,7 +37,8 @@ class MinimumTorqueSpline(SegmentCurve):
     subintervals
         An interval's; 1 is within 2e-4 of the least energy.
     tolerance, max_iterations, on_failure
-        The iteration stops when the relative change of all unknowns meets the tolerance.
+        The iteration stops when the relative change of all unknowns meets the tolerance.  The curve
+        must also meet its keyframes within the tolerance, or 1e-9 rad where that is less.
     """
 
     title = "Minimum torque (reference)"
@@ -70,4 +75,5 @@ class MinimumTorqueSpline(SegmentCurve):
         self.energy = minimise(nodes, rates, h, m, tolerance, max_iterations, segments, report)
         """E of every track, rad^2 / time^3."""
         self._set_segments(segments, report[:, REACH].max(), knots)
-        self._report("gauss-newton", "change", tolerance, report, on_failure)
+        within = max(tolerance, HIT)
+        self._report("gauss-newton", "change", tolerance, report, on_failure, within=within)
