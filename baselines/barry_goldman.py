@@ -35,7 +35,7 @@ class BarryGoldman(SegmentCurve):
     support = 4
     constant_rate = "everywhere"
     family = TRIANGLE
-    operations = {"slerps per sample": 6, "logs per keyframe": 3}
+    operations = {"slerps per sample": 6, "logs per segment": 3}
 
     def _fit(self, keyframes: Keyframes) -> None:
         self._solve(FIT)

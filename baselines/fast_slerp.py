@@ -159,7 +159,7 @@ class FastSlerp(SegmentCurve):
     operations = {
         "polynomial terms per sample": 16,
         "square roots per sample": 1,
-        "logs per keyframe": 1,
+        "logs per segment": 1,
     }
 
     angle_error: float

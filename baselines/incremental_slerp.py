@@ -46,10 +46,10 @@ class IncrementalSlerp(SegmentCurve):
     constant_rate = "everywhere"
     practical_keyframes = 100_000
     family = ARC
-    operations = {"slerps per sample": 1, "logs per keyframe": 65}
+    operations = {"slerps per sample": 1, "logs per segment": 65}
 
     def _fit(self, keyframes: Keyframes, *, steps: Count = 64) -> None:
-        self.operations = {**type(self).operations, "logs per keyframe": steps + 1}
+        self.operations = {**type(self).operations, "logs per segment": steps + 1}
         self.fit_kernel, self.parameters = FIT, np.array([float(steps)])
         h, tracks = keyframes.spacings, keyframes.tracks
         segments = np.empty((tracks.shape[0], h.size * steps, SIZE))

@@ -182,9 +182,12 @@ class Kim(SegmentCurve):
     family = CUMULATIVE
     operations = {
         "exps per sample": 3,
-        "logs per keyframe": 1,
-        "exps per keyframe and iteration": 3,
-        "logs per keyframe and iteration": 1,
+        "exps per knot and iteration": 3,
+        "logs per segment and iteration": 1,
+        "exps per knot": 3,
+        "exps per segment": 4,
+        "logs per segment": 3,
+        "exps per solve": 3,
     }
 
     def _fit(

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
+from numpy.typing import NDArray
 
 from quatspline._jit import REACH
 from quatspline.families.least_torque import minimise
@@ -11,6 +14,7 @@ from quatspline.families.segments import SegmentCurve
 from quatspline.keyframes import Keyframes
 from quatspline.options import Count, OnFailure, Positive
 from quatspline.schemes.local_quintic import LocalQuinticSpline
+from quatspline.solving import SolveReport
 
 HIT = 1e-9
 """Largest miss at a keyframe in rad, where the tolerance is less: keyframes are nodes, so that a miss
@@ -35,10 +39,13 @@ class MinimumTorqueSpline(SegmentCurve):
     Options
     -------
     subintervals
-        An interval's; 1 is within 2e-4 of the least energy.
+        An interval's; 1 is within 3e-4 of the energy at 4 on all keyframe sets of `torque_sets`, of steps up
+        to 110 degrees, and within 7e-3 on those of `step_sets` at 170.
     tolerance, max_iterations, on_failure
-        The iteration stops when the relative change of all unknowns meets the tolerance.  The curve
-        must also meet its keyframes within the tolerance, or 1e-9 rad where that is less.
+        The iteration stops when the relative change of all unknowns meets the tolerance, or comes to rest above
+        it, at rounding: no smaller change in eight updates, which by the gradient gain nothing.  That counts
+        as converged, and `change` tells what was reached: about 1e-11 with one sub-interval.
+        The curve must also meet its keyframes within the tolerance, or 1e-9 rad where that is less.
     """
 
     title = "Minimum torque (reference)"
@@ -72,8 +79,22 @@ class MinimumTorqueSpline(SegmentCurve):
         rates = np.concatenate([v, a], axis=-1) / 2
         segments = np.empty((len(tracks), h.size, self.family.constants))
         report = np.zeros((len(tracks), 4))
-        self.energy = minimise(nodes, rates, h, m, tolerance, max_iterations, segments, report)
+        self.energy, rest = minimise(
+            nodes, rates, h, m, tolerance, max_iterations, segments, report
+        )
         """E of every track, rad^2 / time^3."""
         self._set_segments(segments, report[:, REACH].max(), knots)
         within = max(tolerance, HIT)
-        self._report("gauss-newton", "change", tolerance, report, on_failure, within=within)
+        self._report("gauss-newton", "change", tolerance, report, "return", within=within)
+        self._conclude(self._rested(rest), on_failure)
+
+    def _rested(self, rest: NDArray[np.bool_]) -> SolveReport:
+        """The report, with tracks (K,) that came to rest at rounding as converged."""
+        report = self.solve_report
+        assert report is not None
+        shape = self.keyframes.track_shape
+        here = (rest.reshape(shape) if shape else rest[0]) & (
+            report.residual <= max(report.tolerance, HIT)
+        )
+        converged = report.converged | here
+        return replace(report, converged=converged if shape else bool(converged))

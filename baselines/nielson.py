@@ -24,6 +24,13 @@ METHOD, BY_RESIDUAL, TOLERANCE, LIMIT, STATIONARY, TENSION = range(6)
 METHODS = ("jacobi", "gauss-seidel", "newton")
 JACOBI, GAUSS_SEIDEL, NEWTON = range(3)
 
+NEWTON_OPERATIONS = {
+    "slerps per sample": 6,
+    "exps per keyframe and iteration": 7,
+    "logs per keyframe and iteration": 2,
+    "logs per segment": 3,
+}
+
 STALLED = 4 * np.finfo(float).eps
 """A relative change this small moves nothing any more."""
 
@@ -65,7 +72,13 @@ class Nielson(SegmentCurve):
     constant_rate = "everywhere"
     iterative = True
     family = TRIANGLE
-    operations = {"slerps per sample": 6, "slerps per keyframe and iteration": 2}
+    operations = {
+        "slerps per sample": 6,
+        "slerps per inner keyframe and iteration": 2,
+        "slerps per inner keyframe": 3,
+        "slerps per segment": 2,
+        "logs per segment": 3,
+    }
 
     def _fit(
         self,
@@ -89,6 +102,13 @@ class Nielson(SegmentCurve):
             self.order = 2
         if ends == "stationary" or (nu > 0.0).any():
             self.constant_rate = "no"
+        if method == "newton":
+            self.operations = NEWTON_OPERATIONS
+        elif stop == "residual":  # a residual, of 3 slerps, before the first update and after each
+            more = {"inner keyframe and iteration": 5, "inner keyframe": 6}
+            self.operations = type(self).operations | {
+                f"slerps per {k}": n for k, n in more.items()
+            }
         limit = min(max_iterations, 2**53)
         switches = [METHODS.index(method), stop == "residual", tolerance, limit]
         parameters = np.array([*switches, ends == "stationary", *nu], dtype=float)

@@ -71,7 +71,7 @@ class Nlerp(SegmentCurve):
     support = 2
     constant_rate = "no"
     family = Family(SIZE, near=_KERNELS, far=_KERNELS)
-    operations = {"square roots per sample": 1, "logs per keyframe": 1}
+    operations = {"square roots per sample": 1, "logs per segment": 1}
 
     def _fit(self, keyframes: Keyframes) -> None:
         self._solve(FIT)

@@ -50,7 +50,7 @@ class ShoemakeBezier(SegmentCurve):
     constant_rate: Literal["everywhere", "interior", "no"] = "interior"
     non_uniform = False
     family = TRIANGLE
-    operations = {"slerps per sample": 6, "slerps per keyframe": 1, "logs per keyframe": 3}
+    operations = {"slerps per sample": 6, "slerps per inner keyframe": 1, "logs per segment": 3}
 
     def _fit(
         self,

@@ -25,7 +25,7 @@ class Slerp(SegmentCurve):
     support = 2
     constant_rate = "everywhere"
     family = ARC
-    operations = {"slerps per sample": 1, "logs per keyframe": 1}
+    operations = {"slerps per sample": 1, "logs per segment": 1}
 
     def _fit(self, keyframes: Keyframes) -> None:
         self._solve(FIT)

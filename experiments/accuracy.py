@@ -33,6 +33,7 @@ FORMATS = {
     **dict.fromkeys(TARGETS, ".3g"),
 }
 QUICK, FULL = (21, 41, 81), (11, 21, 41, 81, 161, 321, 641)
+"""Keyframes of the levels; quick runs measure all for our own schemes at uniform times, which orders are read from."""
 KINDS = ("uniform", "jittered", "log-uniform")
 
 BUDGET = 30.0
@@ -50,7 +51,7 @@ def cells(run: Run) -> list[dict[str, Any]]:
 def measure_cell(run: Run, knots: str, scheme: str) -> list[Row]:
     rows = []
     seconds = 0.0
-    for level, count in enumerate(QUICK if run.quick else FULL):
+    for level, count in enumerate(_levels(run, knots, scheme)):
         base = {"knots": knots, "scheme": scheme, "keyframes": count, "spacing": SPAN / (count - 1)}
         if GROWTH * seconds > BUDGET:
             rows.append(base | {"failure": f"over budget beyond {(count + 1) // 2} keyframes"})
@@ -60,6 +61,12 @@ def measure_cell(run: Run, knots: str, scheme: str) -> list[Row]:
         # The first level may load and compile.
         seconds = time.process_time() - began if level else 0.0
     return rows
+
+
+def _levels(run: Run, knots: str, scheme: str) -> tuple[int, ...]:
+    cls = found()[scheme].scheme
+    whole = not run.quick or (knots == KINDS[0] and cls is not None and cls.peer is None)
+    return FULL if whole else QUICK
 
 
 def _measured(run: Run, kind: str, name: str, count: int) -> list[Row]:

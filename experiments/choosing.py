@@ -1,17 +1,20 @@
 """One row a scheme, one column a question: derived from the other tables of the folder."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from quatspline.instruments.claims import DEPARTS, UNDECIDED
+from quatspline.instruments.operations import SET_UP, stated
 from quatspline.quaternion import FloatArray
 from quatspline.registry import found, version
 from quatspline.report import choosing, style
 from quatspline.report.quotes import Reader
 from quatspline.running import Run
+from quatspline.trajectories.sets import COUNT
 
 TITLE = "Which scheme"
 PAPER = False
@@ -25,7 +28,9 @@ NOTE = (
     "for a sample and a keyframe, iterations included; empty where a scheme counts other things. pareto: yes where "
     "no other scheme that passes through its keys is at least as good in torque, order (whole) and both operations "
     "and better in one; times_pareto: the same with the two timings, which libraries have, too. Timings are of "
-    "10,000 samples and 1000 keyframes, or the largest size below that was measured."
+    "10,000 samples and 1000 keyframes, or the largest size below that was measured. worst_failure: the worst of each "
+    "cause; to be off where a scheme claims nothing is none. run_size: quick where a table was measured at that size; "
+    "decisions that hang on little are then left open, and so is smooth_k_worst of libraries."
 )
 FORMATS = {
     "order": ".2f",
@@ -42,14 +47,18 @@ FORMATS = {
 COLUMNS = [
     *("scheme", "passes_keys", "smooth_k", "smooth_k_worst", "order", "spacing_0.1deg", "support"),
     *("uneven_times", "closes", "worst_failure", "edge_cases_exact", "torque", "torque_worst"),
-    *("operations_sample", "operations_keyframe", "pareto", "version", "missing"),
+    *("operations_sample", "operations_keyframe", "pareto", "version", "missing", "run_size"),
     *("nanoseconds_per_sample", "microseconds_per_keyframe"),
     *("times_fastest_sample", "times_fastest_keyframe", "times_pareto"),
 ]
 WHOLE = ("smooth_k", "smooth_k_worst", "edge_cases_exact")
 WORST = ("k_claims", "k_continuity")
-FAILURES = ("leaps_claims", "leaps_continuity", "unsolved", "edges")
-"""Columns on the way: worst continuities, and failures, of which the first that there is counts as the worst."""
+FAILURES = ("leaps", "unsolved", "edges_NaN", "edges_error", "edges_wrong")
+"""Columns on the way: worst continuities, and the worst failure of each cause, the gravest cause first."""
+SMALL = ("undecided", "few_sets", "short_rounds")
+ASIDE = ("leaps_claims", "leaps_continuity", *SMALL)
+"""More of them: leaps by the table that tells of one; and whether the worst continuity is open, sets are few and
+timings are short, as in tables of quick size."""
 ASKED = {"interpolates": "passes_keys", "takes uneven times": "uneven_times", "closes": "closes"}
 """Claims whose measured answers are columns."""
 EASY, SMOOTH = "60 degrees", "smooth"
@@ -79,15 +88,25 @@ def derive(run: Run, read: Reader) -> pd.DataFrame:
         raise ValueError(f"none of {', '.join(SOURCES)} is in the folder: run them first")
     table = pd.concat(parts, axis=1).rename_axis("scheme").reset_index()
     table = table[table["scheme"].isin(run.schemes if run.schemes is not None else list(found()))]
-    table = table.reindex(columns=[*COLUMNS, *WORST, *FAILURES]).infer_objects()
-    table["smooth_k_worst"] = table[list(WORST)].min(axis=1)
-    table["worst_failure"] = table[list(FAILURES)].astype(object).bfill(axis=1).iloc[:, 0]
+    table = table.reindex(columns=[*COLUMNS, *WORST, *FAILURES, *ASIDE]).infer_objects()
+    worst = table[list(WORST)].min(axis=1)
+    table["smooth_k_worst"] = worst.where(table["undecided"].ne(True))
+    leaps = zip(table["leaps_claims"], table["leaps_continuity"], strict=True)
+    table["leaps"] = pd.Series([next(_texts(pair), None) for pair in leaps], dtype=object)
+    causes = zip(*(table[name] for name in FAILURES), strict=True)
+    table["worst_failure"] = ["; ".join(_texts(row)) or None for row in causes]
+    table["run_size"] = "quick" if table[list(SMALL)].eq(True).to_numpy().any() else "full"
     table["version"] = table["scheme"].map(version)
     table["missing"] = ", ".join(missing) or None
     through = table[table["passes_keys"].ne("no")]
     table["pareto"] = choosing.pareto(through, choosing.COUNTED)
     table["times_pareto"] = choosing.pareto(through, choosing.TIMED)
     return table[COLUMNS].astype(dict.fromkeys(WHOLE, "Int64"))
+
+
+def _texts(values: Iterable[Any]) -> Iterator[str]:
+    """Those that are there."""
+    return (str(value) for value in values if not pd.isna(value))
 
 
 def text(table: pd.DataFrame) -> str:
@@ -100,7 +119,7 @@ def text(table: pd.DataFrame) -> str:
 def _claims(table: pd.DataFrame) -> pd.DataFrame:
     rows = table[table["claim"].isin(ASKED) & table["measured"].notna()]
     other = rows["claimed"].map({"yes": "no", "no": "yes"})
-    answers = rows.assign(answer=rows["claimed"].where(rows["verdict"] == "holds", other))
+    answers = rows.assign(answer=rows["claimed"].where(rows["verdict"].ne(DEPARTS), other))
     answers = answers.pivot(index="scheme", columns="claim", values="answer").rename(columns=ASKED)
     orders = table[table["claim"].eq("order")].set_index("scheme")["measured"].astype(float)
     answers = answers.assign(order=orders)
@@ -108,7 +127,9 @@ def _claims(table: pd.DataFrame) -> pd.DataFrame:
     tried = tried.assign(
         k=tried["measured"].astype(int), case=tried["claim"].str.split(", ", n=1).str[1]
     )
-    return answers.join(_smoothness(tried, "claims"), how="outer")
+    answers = answers.join(_smoothness(tried, "claims"), how="outer")
+    open_ones = tried[tried["verdict"].eq(UNDECIDED)]["scheme"].unique()
+    return answers.assign(undecided=answers.index.isin(open_ones))
 
 
 def _continuity(table: pd.DataFrame) -> pd.DataFrame:
@@ -136,22 +157,32 @@ def _locality(table: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame({"support": local.where(first["decay"].isna(), "all")})
 
 
+FAULTS = ("NaN", "error", "wrong")
+"""Results of edge cases that are faults; to be off where a scheme claims nothing is none."""
+
+
 def _edge_cases(table: pd.DataFrame) -> pd.DataFrame:
-    """How many are exact, and the worst of the others: not a number, then failed, then the farthest off."""
+    """How many are exact, and the worst of each kind of fault: what is off by most, one of the others."""
     exact = table[table["result"] == "exact"].groupby("scheme").size()
-    bad = table[(table["result"] != "exact") & ~_refused(table)]
-    rank = bad["result"].map({"NaN": 0, "error": 1, "wrong": 2})
-    bad = bad.assign(rank=rank).sort_values(["rank", "relative"], ascending=[True, False])
-    worst = bad.groupby("scheme").first()
-    off = worst["relative"].map("off by {:.2g} of the step: ".format)
-    how = off.where(worst["rank"] == 2, worst["result"] + ": ")
-    edges = how + worst["case"] if len(worst) else None
-    return pd.DataFrame({"edge_cases_exact": exact, "edges": edges})
+    bad = table[table["result"].isin(FAULTS) & ~_refused(table)]
+    bad = bad.sort_values("relative", ascending=False, kind="stable")
+    columns: dict[str, Any] = {"edge_cases_exact": exact}
+    for result in FAULTS:
+        worst = bad[bad["result"] == result].groupby("scheme").first()
+        told = [_told(str(row["case"]), result, row["relative"]) for _, row in worst.iterrows()]
+        columns[f"edges_{result}"] = pd.Series(told, index=worst.index, dtype=object)
+    return pd.DataFrame(columns)
+
+
+def _told(case: str, result: str, relative: float) -> str:
+    if result == "wrong" and np.isfinite(relative):
+        return f"off by {relative:.2g} of the step: {case}"
+    return f"{result}: {case}"
 
 
 def _refused(table: pd.DataFrame) -> pd.Series:
     """A scheme that says that it does not apply has not failed."""
-    return table["failure"].fillna("").str.startswith("ValueError")
+    return table["failure"].astype(str).str.startswith("ValueError")
 
 
 def _convergence(table: pd.DataFrame) -> pd.DataFrame:
@@ -171,7 +202,8 @@ def _convergence(table: pd.DataFrame) -> pd.DataFrame:
 
 def _fairness(table: pd.DataFrame) -> pd.DataFrame:
     rows = table[table["data"] == "committed"].set_index("scheme")
-    return rows[["median", "worst"]].set_axis(["torque", "torque_worst"], axis=1)
+    energies = rows[["median", "worst"]].set_axis(["torque", "torque_worst"], axis=1)
+    return energies.assign(few_sets=rows["sets"] < COUNT if "sets" in rows else False)
 
 
 def _cost(table: pd.DataFrame) -> pd.DataFrame:
@@ -184,15 +216,16 @@ def _cost(table: pd.DataFrame) -> pd.DataFrame:
         told = [_all_counted(str(name), UNITS[task]) for name in rows.index]
         part = {seconds: each, operations: counts.where(np.array(told, dtype=bool))}
         parts.append(pd.DataFrame({**part, fastest: each / each.min()}))
-    return pd.concat(parts, axis=1)
+    short = "run_size" in table and bool(table["run_size"].eq("quick").any())
+    return pd.concat(parts, axis=1).assign(short_rounds=short)
 
 
 def _all_counted(name: str, unit: str) -> bool:
     """Whether a scheme states what a unit takes, and in nothing but the operations added here."""
     item = found().get(name)
-    stated = item.scheme.operations if item is not None and item.scheme is not None else {}
-    per = [key.partition(" per ") for key in stated]
-    kinds = {operation for operation, _, of in per if of.split(" and ")[0] == unit}
+    operations = item.scheme.operations if item is not None and item.scheme is not None else {}
+    units = SET_UP if unit == "keyframe" else (unit,)
+    kinds = {entry.operation for entry in stated(operations) if entry.unit in units}
     return bool(kinds) and kinds <= set(COUNTED)
 
 

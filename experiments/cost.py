@@ -68,6 +68,7 @@ def measure_cell(run: Run, task: str, size: int) -> list[dict[str, Any]]:
     for name in names:
         cost = found[name]
         row = {"task": task, "size": size, "scheme": name, "version": registry.version(name)}
+        row["run_size"] = run.size
         row |= {"failure": cost.failure, **_counts(task, name)}
         row |= {"seconds_median": cost.seconds, "seconds_iqr": cost.iqr}
         if not run.quick and size == MEMORY[task] and cost.seconds < MEMORY_SHARE * budget:

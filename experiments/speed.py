@@ -52,7 +52,7 @@ def _rows(task: Task, run: Run, names: list[str], rounds: int) -> list[dict[str,
     least = LEAST / 10 if run.quick else LEAST
     for row in measured(task, names, rounds, run.seed, least):
         base: dict[str, object] = {"task": task.name, "scheme": row.name, "unit": task.unit}
-        base |= {"keyframes": task.keyframes, "failure": row.failure}
+        base |= {"keyframes": task.keyframes, "failure": row.failure, "run_size": run.size}
         if row.timing is None:
             rows.append(base)
             continue
@@ -83,6 +83,7 @@ def _starts(rounds: int, quick: bool) -> list[dict[str, object]]:
             "scheme": name,
             "unit": "process",
             "timed_items": 1,
+            "run_size": "quick" if quick else "full",
         }
         rows.append(base | {"seconds_median": float(middle), "seconds_iqr": float(high - low)})
     return rows

@@ -1,8 +1,8 @@
 """Tests that take an argument `scheme` run for every scheme that is discovered, by name.
 
 ``--scheme NAME`` (or QUATSPLINE_SCHEME, a comma list) keeps some of them.  A check that holds
-for some schemes only says so with `walks.applies`; a peer that does not pass one, run as published,
-says so in its `departs`, and then has to fail it.
+for some schemes only says so with `walks.applies`; a scheme that does not pass one, such as a peer run as
+published, says so in its `departs`, and then has to fail it.
 """
 
 import os

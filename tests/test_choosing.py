@@ -107,6 +107,58 @@ def test_nothing_is_said_where_nothing_fits() -> None:
     assert list(choosing.decisions(pd.DataFrame(unfit))) == []
 
 
+QUICK = pd.DataFrame(
+    {
+        "scheme": ["a", "b", "c"],
+        "passes_keys": "yes",
+        "closes": "yes",
+        "smooth_k": 2,
+        "smooth_k_worst": [2, 2, np.nan],
+        "support": ["all", "8", "4"],
+        "torque": [1.02, 1.03, 1.0],
+        "nanoseconds_per_sample": [10.0, 18.0, 21.0],
+        "operations_sample": [3, 1, 2],
+    }
+)
+
+
+def told(table: pd.DataFrame) -> dict[str, str]:
+    """Sentences by how they begin."""
+    parts = ("".join(map(str, sentence)) for sentence in choosing.decisions(table))
+    return dict(text.split(": ", 1) for text in parts)
+
+
+def test_quick_size_leaves_open_what_hangs_on_little() -> None:
+    full, quick = told(QUICK.assign(run_size="full")), told(QUICK.assign(run_size="quick"))
+    assert set(quick) == set(full)
+    open_ones = {wish for wish, answer in quick.items() if answer == "not decided at quick size."}
+    assert all(quick[wish] == full[wish] for wish in set(quick) - open_ones)
+    assert {wish.split()[0] for wish in open_ones} == {"Closed", "The", "C2"}
+    fewest = next(wish for wish in quick if "fewest operations" in wish)
+    assert quick[fewest].startswith("b ")
+    lines = list(choosing.lines(QUICK.assign(run_size="quick")))
+    assert sum("not decided at quick size. Cells: `choosing.csv[" in line for line in lines) == len(
+        open_ones
+    )
+
+
+def test_a_table_of_a_quick_source_is_quick(module, folder: Path) -> None:
+    def sized() -> str:
+        table = module.derive(Run(quick=True), reader(folder))
+        return str(table["run_size"].unique().item())
+
+    assert sized() == "full"
+    cost = Results(folder).read_table("cost")
+    Results(folder).table("cost", cost.assign(run_size="quick"))
+    assert sized() == "quick"
+    Results(folder).table("cost", cost.assign(run_size="full"))
+    fair = Results(folder).read_table("fairness")
+    Results(folder).table("fairness", fair.assign(sets=6))
+    assert sized() == "quick"
+    Results(folder).table("fairness", fair.assign(sets=200))
+    assert sized() == "full"
+
+
 # -- the table ----------------------------------------------------------------------------------
 
 
@@ -158,8 +210,33 @@ def test_the_worst_failure_is_the_gravest(module) -> None:
             ],
         }
     )
-    found = module._edge_cases(edges)["edges"]
-    assert found.to_dict() == {"a": "NaN: z", "b": "off by 0.25 of the step: x"}
+    found = module._edge_cases(edges)
+    assert found["edges_NaN"].dropna().to_dict() == {"a": "NaN: z"}
+    off = {"a": "off by 2 of the step: y", "b": "off by 0.25 of the step: x"}
+    assert found["edges_wrong"].dropna().to_dict() == off
+    assert found["edges_error"].isna().all()  # a refusal is no failure
+
+
+def test_what_a_scheme_claims_is_no_failure(module, folder: Path) -> None:
+    """The quartic's missing constant rate at the ends, under each of four names, and the worst of each cause."""
+    cases = ["Unix times", "sign-flipped", "near half-turn", "tiny rotations"]
+    off = {"case": cases, "relative": 0.051, "failure": None}
+    rows = [
+        pd.DataFrame({"scheme": "quartic", "result": "as claimed", **off}),
+        pd.DataFrame(
+            {"scheme": "local-quintic", "result": ["exact", "exact", "wrong", "NaN"], **off}
+        ),
+    ]
+    Results(folder).table("edge-cases", pd.concat(rows))
+    leap = {"case": "170 degrees, uneven", "scheme": "local-quintic", "measured_k": -1}
+    tables = [Results(folder).read_table("continuity"), pd.DataFrame([leap])]
+    Results(folder).table("continuity", pd.concat(tables))
+    table = module.derive(Run(quick=True), reader(folder)).set_index("scheme")
+    assert pd.isna(table.loc["quartic", "worst_failure"])
+    said = (
+        "leaps: 170 degrees, uneven; NaN: tiny rotations; off by 0.051 of the step: near half-turn"
+    )
+    assert table.loc["local-quintic", "worst_failure"] == said
 
 
 def test_the_best_method_of_a_scheme_counts(module) -> None:

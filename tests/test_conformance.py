@@ -1028,7 +1028,7 @@ MAY_DEPART = {"test_keeps_given_signs"}
 """Not every construction can go the long way round: rotation matrices do not tell q from -q."""
 
 
-def test_departures_are_peers_and_name_checks(scheme: Scheme) -> None:
+def test_departures_name_checks_and_only_peers_have_others_than_signs(scheme: Scheme) -> None:
     import test_claims
 
     names = {check.__name__ for check in [*CHECKS, *test_claims.CHECKS]}

@@ -155,3 +155,13 @@ def test_what_is_broken_does_not_build(line: str, tmp_path: Path) -> None:
         page.write(f"\n{line}\n")
     with pytest.raises(pytest.importorskip("mkdocs.exceptions").Abort):
         build(docs, tmp_path / "site")
+
+
+def test_tables_that_pages_cite_exist() -> None:
+    """A page names a table of the reference, and not tables at large."""
+    known = {path.name for path in (ROOT / "results" / "reference").glob("*.csv")}
+    for page in [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]:
+        text = page.read_text(encoding="utf-8")
+        cited = set(re.findall(r"results/([\w-]+\.csv)", text))
+        assert cited <= known, (page.name, cited - known)
+        assert "the results tables" not in text, page.name

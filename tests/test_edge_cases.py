@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import quatspline as qs
 from quatspline import quaternion
 from quatspline.instruments import edges
 from quatspline.instruments.edges import SAMPLES, edge_result
@@ -47,7 +48,7 @@ def test_nlerp_is_wrong_by_its_closed_form():
     u, half = np.arange(SAMPLES) / SAMPLES, 0.5
     angle = 2.0 * np.arctan2(u * np.sin(half), 1.0 - u + u * np.cos(half))
     row = edge_result(CASES["two keys"], "nlerp")
-    assert row["result"] == "wrong"
+    assert (row["result"], row["checked"]) == ("as claimed", "keys")  # it claims no constant rate
     assert row["deviation"] == pytest.approx(np.abs(angle - u).max(), rel=1e-9)
     assert row["relative"] == pytest.approx(row["deviation"], rel=1e-9)
 
@@ -96,3 +97,74 @@ def test_rates_that_are_not_numbers_count(monkeypatch):
     monkeypatch.setattr(edges, "scheme", lambda name: Rates)
     row = edge_result(CASES["equal keys"], "toy")
     assert (row["result"], row["failure"]) == ("NaN", "acceleration is not a number")
+
+
+# -- judged by what is claimed ------------------------------------------------------------------
+
+SPINS = ["Unix times", "sign-flipped", "near half-turn", "tiny rotations", "extreme uneven times"]
+
+
+@pytest.mark.parametrize("case", [*SPINS, "two keys"])
+def test_the_quartics_missing_rate_at_the_ends_is_its_claim(case):
+    """Off by 0.051 of the step in end segments (6/125 (1 + ...) by its ghosts), and exact between."""
+    row = edge_result(CASES[case], "quartic")
+    assert (row["result"], row["checked"]) == ("as claimed", "truth inside"), row
+    assert 0.005 < row["relative"] < 0.052
+
+
+@pytest.mark.parametrize("name", ["quartic", "quintic", "nlerp", "moving-frame"])
+def test_what_closes_has_no_ends_and_what_rests_stays(name):
+    closed = edge_result(CASES["closed full turn"], name)
+    claims_none = qs.scheme(name).constant_rate == "no"
+    assert closed["result"] == ("as claimed" if claims_none else "exact")
+    for case in ("equal keys", "antipodes"):
+        row = edge_result(CASES[case], name)
+        assert (row["result"], row["checked"]) == ("exact", "truth")
+
+
+def test_a_fold_of_a_chart_is_a_fault_without_any_claim():
+    row = edge_result(CASES["near half-turn"], "log-cubic")
+    assert (row["result"], row["checked"]) == ("wrong", "keys")
+    assert row["relative"] > 0.9
+
+
+class _Bent(Toy):
+    """A constant rate, off it by 1 % of the step in one segment, with keyframes met."""
+
+    segment = 0
+
+    def _orientation(self, t):
+        segment, u = self.located(t)
+        bump = np.where(segment == self.segment, 0.04 * u * (1.0 - u), 0.0)
+        return self.slerped(segment, u + bump)
+
+
+@pytest.mark.parametrize(
+    ("claim", "segment", "result"),
+    [
+        ("interior", 0, "as claimed"),
+        ("interior", 4, "as claimed"),
+        ("interior", 1, "wrong"),
+        ("interior", 3, "wrong"),
+        ("everywhere", 0, "wrong"),
+        ("no", 2, "as claimed"),
+    ],
+)
+def test_a_deviation_counts_where_none_is_claimed(monkeypatch, claim, segment, result):
+    claims = {"constant_rate": claim, "segment": segment, "support": 4, "name": "toy"}
+    monkeypatch.setattr(edges, "scheme", lambda name: type("_", (_Bent,), claims))
+    row = edge_result(CASES["sign-flipped"], "toy", align=True)
+    assert row["result"] == result
+    assert row["relative"] == pytest.approx(0.01)
+
+
+def test_a_missed_keyframe_is_a_fault_unless_none_is_met(monkeypatch):
+    class Off(Toy):
+        def _orientation(self, t):
+            return quaternion.mul(self.slerped(*self.located(t)), quaternion.exp([0.01, 0.0, 0.0]))
+
+    for interpolates, result in ((True, "wrong"), (False, "as claimed")):
+        cls = type("_", (Off,), {"interpolates": interpolates, "name": "toy"})
+        monkeypatch.setattr(edges, "scheme", lambda name, cls=cls: cls)
+        for case in ("sign-flipped", "there and back"):
+            assert edge_result(CASES[case], "toy")["result"] == result

@@ -29,6 +29,7 @@ COLUMNS = [
     *("case", "frames", "scheme", "protocol", "iterations", "tolerance", "slerps", "exps", "logs"),
     *("seconds_median", "seconds_iqr", "repeats", "ratio_to_quartic"),
     *("paper_iterations", "paper_seconds", "paper_ratio"),
+    *(f"{key}_{part}" for key in ("slerps", "exps", "logs") for part in ("updates", "rest")),
 ]
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from quatspline.trajectories import files
+from quatspline.atomic import replacing
 from quatspline.trajectories.files import KeyframeFileError, Motion, read, write, writing
 
 TIMES = np.array([0.0, 0.1, 1.0 / 3.0, 1305031102.175800085])
@@ -325,7 +325,7 @@ def test_a_failed_write_leaves_the_old_file(tmp_path: Path) -> None:
     path = put(tmp_path, "k.csv", "precious")
 
     def fail_halfway() -> None:
-        with files.replacing(path) as aside:
+        with replacing(path) as aside:
             aside.write_text("half")
             assert path.read_text() == "precious"
             raise RuntimeError
@@ -342,7 +342,7 @@ def test_writing_goes_through_links_and_keeps_devices(tmp_path: Path) -> None:
     write(tmp_path / "link.csv", Motion(TIMES, QUATERNIONS))
     assert (tmp_path / "link.csv").is_symlink()
     assert target.read_text().startswith("t,qw")
-    with files.replacing(Path(os.devnull)) as aside:
+    with replacing(Path(os.devnull)) as aside:
         assert aside == Path(os.devnull)
     assert Path(os.devnull).is_char_device()
 

@@ -110,3 +110,23 @@ def test_where_nothing_can_be_measured_there_is_a_table_of_reasons(tmp_path, mon
     table = Results(tmp_path).read_table("noise")
     assert set(table["failure"]) == {"TypeError: slerp has no such option"}
     assert not (tmp_path / "noise.png").exists()
+
+
+@pytest.mark.parametrize(("name", "order"), [("kim", 3), ("quartic", 2), ("local-quintic", 4)])
+def test_quick_orders_are_those_of_full_size(name, order):
+    """They are read between the two finest levels; between 41 and 81 keyframes kim's is 3.50."""
+    module = load(found()["accuracy"], "experiment")
+    quick, full = (
+        module.gather(run, pd.DataFrame(module.measure_cell(run, "uniform", name)))
+        for run in (Run(quick=True), Run(quick=False))
+    )
+    assert quick["slope"].iloc[-1] == full["slope"].iloc[-1] == pytest.approx(order, abs=0.1)
+
+
+def test_quick_size_measures_libraries_at_fewer_keyframes():
+    module = load(found()["accuracy"], "experiment")
+    levels = [
+        module._levels(Run(quick=True), kind, name)
+        for kind, name in [("uniform", "kim"), ("jittered", "kim"), ("uniform", "scipy-slerp")]
+    ]
+    assert levels == [module.FULL, module.QUICK, module.QUICK]

@@ -9,6 +9,7 @@ import pytest
 
 import quatspline as qs
 from quatspline.curve import Curve
+from quatspline.trajectories.sets import step_sets
 from walks import spin, uneven, walk
 
 GOLDEN = json.loads((Path(__file__).parent / "data" / "golden.json").read_text())
@@ -132,6 +133,59 @@ def test_large_steps_converge() -> None:
         for seed in range(5):
             curve = qs.build("min-torque", None, walk(20, degrees, seed))
             assert curve.solve_report.converged
+
+
+@pytest.mark.parametrize("degrees", [60.0, 120.0, 170.0])
+@pytest.mark.parametrize("count", [5, 9, 20])
+def test_a_change_that_stalls_at_rounding_is_an_end(count: int, degrees: float) -> None:
+    """With one sub-interval the change stalls at 1e-11: at a tolerance of 1e-12 updates ran out."""
+    t, q = uneven(count), walk(count, degrees)
+    curve = qs.build("min-torque", t, q, subintervals=1, tolerance=1e-12)
+    report = curve.solve_report
+    assert report.converged
+    assert report.change < 1e-10
+    assert report.iterations < 100
+    near = qs.build("min-torque", t, q, subintervals=1, tolerance=1e-9)
+    assert curve.energy[0] == pytest.approx(near.energy[0], rel=1e-13)
+
+
+def test_one_that_does_not_stall_there_is_none() -> None:
+    """Few updates, all of which fall: the end is that of the limit."""
+    t, q = uneven(9), walk(9, 120.0)
+    options = {"subintervals": 1, "tolerance": 1e-12, "on_failure": "return"}
+    assert not qs.build("min-torque", t, q, max_iterations=6, **options).solve_report.converged
+
+
+def test_tracks_may_rest_or_converge() -> None:
+    t = uneven(9)
+    q = np.stack([walk(9, 120.0), spin(t, [1.0, 2.0, 2.0], 1.5)], axis=1)
+    report = qs.build("min-torque", t, q, subintervals=1, tolerance=1e-12).solve_report
+    assert report.converged.tolist() == [True, True]
+    assert report.change[1] <= 1e-12
+
+
+def test_a_track_that_fails_is_named_by_its_index() -> None:
+    t = uneven(9)
+    still = np.broadcast_to([1.0, 0.0, 0.0, 0.0], (9, 2, 3, 4)).copy()
+    still[:, 1, 2] = walk(9, 120.0)
+    with pytest.raises(qs.ConvergenceError, match=r"did not converge on track \[1, 2\]: after 2 "):
+        qs.build("min-torque", t, still, max_iterations=2)
+    with pytest.raises(qs.ConvergenceError, match=r"did not converge on track \[4\]: after 2 "):
+        qs.build("min-torque", t, still.reshape(9, 6, 4)[:, 1:], max_iterations=2)
+    with pytest.raises(qs.ConvergenceError, match=r"did not converge: after 2 "):
+        qs.build("min-torque", t, still[:, 1, 2], max_iterations=2)
+
+
+@pytest.mark.parametrize(("degrees", "within"), [(50, 3e-5), (110, 4e-4), (150, 3e-3), (170, 7e-3)])
+def test_one_subinterval_is_near(degrees: int, within: float) -> None:
+    """The docstring's numbers, on sets of one step angle."""
+    worst = 0.0
+    for t, q in step_sets(degrees, 10):
+        one, four = (
+            qs.build("min-torque", t, q, subintervals=m, tolerance=1e-9).energy[0] for m in (1, 4)
+        )
+        worst = max(worst, one / four - 1.0)
+    assert 0.3 * within < worst < within
 
 
 def test_closed_is_refused() -> None:

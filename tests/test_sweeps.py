@@ -10,6 +10,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 import pytest
@@ -147,6 +148,72 @@ def test_workers_find_folders_named_after_they_started(
     assert running.run(["seen"], out=bench.out, jobs=2) == []
     problems = pd.read_csv(bench.out / "seen.csv")["problem"]
     assert problems.tolist() == ["RuntimeError: found"] * 2
+
+
+HERE_ALONE = """import os
+if os.getpid() != {pid}:
+    raise RuntimeError("only where it started")
+from quatspline.registry import scheme
+Scheme = type("Scheme", (scheme("slerp"),), {{"__module__": __name__}})
+"""
+"""A scheme that the process of the test can use, and no worker."""
+
+
+@pytest.mark.parametrize(
+    ("cell", "schemes", "lost"),
+    [
+        ("{'scheme': name}", None, {"here-alone"}),  # a cell that names what it needs
+        ("{'x': name + '.'}", None, {"here-alone.", "squad.", "never."}),  # may need anything
+        ("{'x': name + '.'}", ["squad"], set()),
+    ],
+)
+def test_a_scheme_that_fails_on_a_worker_alone_makes_no_row(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch, cell: str, schemes: Any, lost: set[str]
+) -> None:
+    folder = bench.folder / "schemes"
+    folder.mkdir()
+    (folder / "here_alone.py").write_text(HERE_ALONE.format(pid=os.getpid()))
+    (folder / "never.py").write_text("raise RuntimeError('nowhere')")
+    monkeypatch.setenv(registry.FOLDERS, str(folder))
+    (bench.folder / "swept.py").write_text(
+        f"def cells(run): return [{cell} for name in ('squad', 'here-alone', 'never')]\n"
+        "def measure_cell(run, **cell):\n"
+        "    from quatspline.registry import found\n"
+        "    name, = cell.values()\n"
+        "    return cell | {'failure': found()[name.strip('.')].problem}\n"
+    )
+    assert bench.run(jobs=2, schemes=schemes) == (["swept"] if lost else [])
+    if not lost:
+        assert len(pd.read_csv(bench.out / "swept.csv")) == 3
+        return
+    failure = json.loads((bench.out / "manifest.json").read_text())["experiments"]["swept"][
+        "failure"
+    ]
+    assert "scheme 'here-alone' can be used where the run started, not on this worker" in failure
+    assert "RuntimeError: only where it started" in failure
+    assert bench.kept() == 3 - len(lost)
+    assert not (bench.out / "swept.csv").exists()
+
+
+def test_the_command_ends_with_status_1_where_a_worker_lost_cells(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A scheme that no process can use is a row, and status 0."""
+    bench.experiment("from quatspline.registry import scheme; scheme('slerp')")
+    (bench.folder / "never.py").write_text("raise RuntimeError('nowhere')")
+    monkeypatch.setenv(registry.FOLDERS, str(bench.folder))
+    (bench.folder / "once.py").write_text(
+        "import os, pathlib\n"
+        "if (count := pathlib.Path(__file__).with_name('asked')).exists(): 1 / 0\n"
+        "count.touch()\n" + "from quatspline.registry import scheme\n"
+        "Scheme = type('Scheme', (scheme('slerp'),), {'__module__': __name__})\n"
+    )
+    for status in (1, 0):
+        with bench.popen("--jobs", "2") as process:
+            said = process.communicate()[1]
+        assert process.returncode == status, said
+        assert ("'once' can be used where the run started" in said) is bool(status)
+    assert len(pd.read_csv(bench.out / "swept.csv")) == 4 * COUNT
 
 
 # -- nothing lost -------------------------------------------------------------------------------
@@ -307,6 +374,25 @@ def test_a_killed_dask_worker_loses_nothing(bench: Bench, cluster) -> None:
     assert bench.run(dask=cluster.scheduler_address) == []
     assert len(pd.read_csv(bench.out / "swept.csv")) == 4 * COUNT
     assert bench.measured()[3] == 2
+
+
+def test_a_worker_of_several_threads_measures_one_cell_at_a_time(bench: Bench) -> None:
+    """Its threads ask for schemes first at once, and none is lost either."""
+    distributed = pytest.importorskip("distributed")
+    bench.experiment(
+        """assert not (HERE / "inside").exists(), "two cells at once"
+    (HERE / "inside").touch()
+    from quatspline.registry import found, schemes
+    assert len(schemes()) == """
+        + str(len(registry.schemes()))
+        + """
+    time.sleep(0.1)  # in which another thread would come
+    (HERE / "inside").unlink()"""
+    )
+    with distributed.LocalCluster(1, threads_per_worker=2, dashboard_address=":0") as local:
+        assert bench.run(dask=local.scheduler_address) == []
+    assert bench.measured() == dict.fromkeys(range(COUNT), 1)
+    assert len(bench.workers()) == 1
 
 
 @pytest.mark.parametrize(

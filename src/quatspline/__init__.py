@@ -7,6 +7,8 @@ and a page show what was measured.  Start with ``quatspline.build``.
 from __future__ import annotations
 
 import importlib
+import sys
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -43,6 +45,21 @@ __all__ = [
     "scheme",
     "schemes",
 ]
+
+
+class _Package(ModuleType):
+    """This package, in which `schemes` is the function and never the subpackage of that name.
+
+    The import system binds a subpackage when its import ends.  Taken away later, it would stand there
+    for a moment in which other threads call it.
+    """
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if not (name == "schemes" and isinstance(value, ModuleType)):
+            super().__setattr__(name, value)
+
+
+sys.modules[__name__].__class__ = _Package
 
 
 def __getattr__(name: str) -> Any:

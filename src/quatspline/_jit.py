@@ -18,16 +18,18 @@ import hashlib
 import os
 import re
 import tempfile
-import threading
 from collections.abc import Callable, Iterator
-from functools import cache, cached_property
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numba
 from llvmlite import ir
 from numba.core import types
+from numba.core.compiler_lock import global_compiler_lock
 from numba.extending import intrinsic
+
+from quatspline import forking
 
 BLOCK = 48
 """Samples in a block: its sheet stays within the first-level cache, and rows no power of two apart
@@ -91,15 +93,25 @@ def _imported(text: str) -> Iterator[str]:
         yield from (f"quatspline.{member.split()[0]}" for member in members.split(","))
 
 
+forking.hold(global_compiler_lock)  # a child that inherits it taken could compile nothing
+
+
 def _cached(function: Callable[..., Any], decorate: Callable[[], Any]) -> Any:
-    """Run a numba decorator with the cache in our folder, leaving numba's own setting alone."""
+    """Run a numba decorator with the cache in our folder, leaving numba's own setting alone.
+
+    That setting is the process's: of two threads at once, one would compile into the other's folder,
+    or leave its own behind.  The lock is the one that numba compiles under, so that no two locks can
+    be taken in two orders.
+    """
+    folder = cache_folder(Path(function.__code__.co_filename))
     config: Any = numba.config
-    before = config.CACHE_DIR
-    config.CACHE_DIR = cache_folder(Path(function.__code__.co_filename))
-    try:
-        return decorate()
-    finally:
-        config.CACHE_DIR = before
+    with forking.undivided(), global_compiler_lock:
+        before = config.CACHE_DIR
+        config.CACHE_DIR = folder
+        try:
+            return decorate()
+        finally:
+            config.CACHE_DIR = before
 
 
 def inlined(function: Callable[..., Any]) -> Any:
@@ -122,9 +134,6 @@ def whole(n):
     return (n + 7) & -8
 
 
-_compiling = threading.Lock()
-
-
 class Kernel:
     """A function compiled on first use and called from compiled code through its address."""
 
@@ -132,17 +141,23 @@ class Kernel:
         self.python = function
         self.signature = signature
         self._compiled: Any = None  # kept alive: the address belongs to it
+        self._address = 0
 
-    @cached_property
+    @property
     def address(self) -> int:
         """The address of the compiled function; compiles it, or loads it from the cache."""
-        with _compiling:
+        # Not a cached_property: Python 3.11 computes those under a lock that a fork leaves taken.
+        return self._address or self._compile()
+
+    def _compile(self) -> int:
+        with forking.undivided(), global_compiler_lock:
             if self._compiled is None:  # another thread may have been here first
                 self._compiled = _cached(
                     self.python,
                     lambda: numba.cfunc(self.signature, cache=True, **SETTINGS)(self.python),
                 )
-        return int(self._compiled.address)
+                self._address = int(self._compiled.address)
+        return self._address
 
 
 _sheet = types.CPointer(types.float64)

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-import quatspline.schemes
 from quatspline import keyframes as kf
 from quatspline import numeric, options, quaternion, solving, stamps
 from quatspline.inputs import FloatArray, at, real_array
@@ -20,11 +19,6 @@ from quatspline.solving import SolveReport
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
-
-# Importing the subpackage binds its name in the package, over the public function of that name.
-# It is bound once, at its first import: taken away here, before any scheme can be loaded.
-if not callable(quatspline.schemes):
-    del quatspline.schemes
 
 EDGE = 4
 """Samples this many ulp outside an open domain count as its end."""
@@ -97,7 +91,7 @@ class Curve(abc.ABC):
     operations: dict[str, float] = {}
     """Counts that no machine changes: e.g. {"exps per sample": 3, "logs per keyframe": 1}."""
     departs: ClassVar[dict[str, str]] = {}
-    """Conformance checks that a peer, run as published, does not pass, each with its reason."""
+    """Conformance checks that a scheme does not pass, a peer run as published as a rule, each with its reason."""
     batched: ClassVar[bool] = False
     """Whether `_fit` and the evaluation take all tracks at once."""
 

@@ -59,6 +59,11 @@ class Run:
     schemes: list[str] | None = None
     seed: int = 0
 
+    @property
+    def size(self) -> str:
+        """ "quick" or "full"."""
+        return "quick" if self.quick else "full"
+
     def rng(self, *names: object) -> np.random.Generator:
         """A generator seeded by the run's seed and by names, whatever else was drawn before."""
         import numpy as np

@@ -7,11 +7,9 @@ entry points of the group ``quatspline.schemes``.
 
 from __future__ import annotations
 
-import hashlib
+import importlib
 import importlib.metadata
-import importlib.util
 import os
-import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
@@ -20,6 +18,8 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from quatspline.curve import Curve
+from quatspline.forking import undivided
+from quatspline.loading import load, passing, unfinished
 from quatspline.options import nearest
 
 if TYPE_CHECKING:
@@ -38,31 +38,14 @@ class Found:
     origin: str
     scheme: type[Curve] | None
     problem: str | None = None
+    settled: bool = True
+    """False where the problem is an import under way, after which it may be gone."""
 
 
 def shipped(folder: str) -> Path:
     """A folder that a checkout keeps beside ``src`` and a wheel carries inside the package."""
     inside = PACKAGE / folder
     return inside if inside.is_dir() else PACKAGE.parents[1] / folder
-
-
-def load(path: Path, prefix: str) -> ModuleType:
-    """Import a file by path, once; registered before it runs (dataclasses need that)."""
-    place = hashlib.sha256(str(path.resolve()).encode()).hexdigest()[:8]
-    name = f"quatspline_{prefix}_{path.stem}_{place}"
-    if name in sys.modules:
-        return sys.modules[name]
-    spec = importlib.util.spec_from_file_location(name, path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    try:
-        spec.loader.exec_module(module)
-    except BaseException:
-        del sys.modules[name]
-        raise
-    return module
 
 
 def folders() -> list[Path]:
@@ -76,10 +59,25 @@ def _folders(extra: str) -> tuple[Path, ...]:
     return (PACKAGE / "schemes", shipped("baselines"), *given)
 
 
+_complete: dict[Any, dict[str, Found]] = {}
+"""What was found, by the folders and when they last changed."""
+
+
 def found() -> dict[str, Found]:
-    """Every scheme by name, those that cannot be used included, with the reason."""
+    """Every scheme by name, those that cannot be used included, with the reason.
+
+    Threads that ask first at the same time all look, and wait for each other's imports; what one
+    finds while a scheme is still being imported is not kept.
+    """
     places = _folders(os.environ.get(FOLDERS, ""))
-    return _found(places, tuple(map(_changed, places)))
+    key = places, tuple(map(_changed, places))
+    if key not in _complete:
+        with undivided():
+            everything = _find(places)
+        if not all(item.settled for item in everything.values()):
+            return everything
+        _complete.setdefault(key, everything)
+    return _complete[key]
 
 
 def _changed(folder: Path) -> int:
@@ -90,8 +88,7 @@ def _changed(folder: Path) -> int:
         return 0
 
 
-@cache
-def _found(places: tuple[Path, ...], changed: tuple[int, ...]) -> dict[str, Found]:
+def _find(places: tuple[Path, ...]) -> dict[str, Found]:
     files = [path for folder in places for path in sorted(folder.glob("[!_]*.py"))]
     once = {path.resolve(): path for path in reversed(files)}  # the first folder that has it
     everything: dict[str, Found] = {}
@@ -178,25 +175,35 @@ def _discover(files: tuple[Path, ...]) -> Iterator[Found]:
 
 
 def _from_file(path: Path) -> Found:
-    name = path.stem.replace("_", "-")
+    name, origin = path.stem.replace("_", "-"), str(path)
     try:
-        if path.parent == PACKAGE / "schemes":
-            module = importlib.import_module(f"quatspline.schemes.{path.stem}")
-        else:
-            module = load(path, "baseline")
-        classes = [
-            value
-            for value in vars(module).values()
-            if isinstance(value, type)
-            and issubclass(value, Curve)
-            and value.__module__ == module.__name__
-            and not value.__name__.startswith("_")
-        ]
-        if len(classes) != 1:
-            raise TypeError(f"one subclass of Curve expected, {len(classes)} found")
+        module = _module(path)
+        if unfinished(module.__name__):
+            return Found(name, origin, None, "it is still being imported", settled=False)
+        scheme = _only_scheme(module)
     except (Exception, SystemExit) as error:  # a broken plug-in must not take the others down
-        return Found(name, str(path), None, f"{type(error).__name__}: {error}")
-    return _usable(name, str(path), classes[0])
+        return _broken(name, origin, error)
+    return _usable(name, origin, scheme)
+
+
+def _module(path: Path) -> ModuleType:
+    if path.parent == PACKAGE / "schemes":
+        return importlib.import_module(f"quatspline.schemes.{path.stem}")
+    return load(path, "baseline")
+
+
+def _only_scheme(module: ModuleType) -> type[Curve]:
+    classes = [
+        value
+        for value in vars(module).values()
+        if isinstance(value, type)
+        and issubclass(value, Curve)
+        and value.__module__ == module.__name__
+        and not value.__name__.startswith("_")
+    ]
+    if len(classes) != 1:
+        raise TypeError(f"one subclass of Curve expected, {len(classes)} found")
+    return classes[0]
 
 
 def _from_entry(entry: importlib.metadata.EntryPoint) -> Found:
@@ -205,8 +212,12 @@ def _from_entry(entry: importlib.metadata.EntryPoint) -> Found:
         if not (isinstance(scheme, type) and issubclass(scheme, Curve)):
             raise TypeError(f"no subclass of Curve: {scheme!r}")
     except (Exception, SystemExit) as error:
-        return Found(entry.name, entry.value, None, f"{type(error).__name__}: {error}")
+        return _broken(entry.name, entry.value, error)
     return _usable(entry.name, entry.value, scheme)
+
+
+def _broken(name: str, origin: str, error: BaseException) -> Found:
+    return Found(name, origin, None, f"{type(error).__name__}: {error}", settled=not passing(error))
 
 
 def _usable(name: str, origin: str, scheme: type[Curve]) -> Found:

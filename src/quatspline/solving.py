@@ -69,13 +69,13 @@ class ConvergenceError(RuntimeError):
 
 
 def require_converged(name: str, report: SolveReport, *, tracks: bool) -> None:
-    """Raise ConvergenceError of the first track that did not converge, named if there are several."""
+    """Raise ConvergenceError of the first track that did not converge, named by its index if there are several."""
     if np.all(report.converged):
         return
-    k = int(np.argmin(np.reshape(report.converged, -1)))
-    track = f" on track {k}" if tracks else ""
+    k = np.unravel_index(int(np.argmin(report.converged)), np.shape(report.converged))
+    track = f" on track {[int(i) for i in k]}" if tracks else ""
     values = (report.iterations, report.change, report.residual)
-    iterations, change, residual = (np.reshape(x, -1)[k] for x in values)
+    iterations, change, residual = (np.asarray(x)[k] for x in values)
     raise ConvergenceError(
         f"{name} ({report.method}) did not converge{track}: after {iterations} iterations "
         f"change {change:.3g}, residual {residual:.3g} rad, tolerance {report.tolerance:g}",

@@ -92,7 +92,7 @@ def _side_by_side(name: str, run: Run, cells: Sequence[Cell]) -> Iterator[Done]:
     from joblib.externals.loky.process_executor import TerminatedWorkerError
 
     environment = _environment()
-    shared = (name, run, environment, _sources(*environment.items()))
+    shared = (name, run, environment, _sources(*environment.items()), registry.schemes())
     left = dict(enumerate(cells))
     while left:
         begun: set[int] = set()
@@ -172,25 +172,51 @@ def _client(address: str) -> AbstractContextManager[Any]:
 
 # -- in a worker --------------------------------------------------------------------------------
 
-_loading = threading.Lock()
+_measuring = threading.Lock()
+"""One cell at a time in a process: a Dask worker has several threads, and what a cell times, or a
+library that bears no threads, must not share it."""
 
 
 def _measured_elsewhere(
-    place: int, name: str, run: Run, environment: dict[str, str], sources: str, cell: Cell
+    place: int,
+    name: str,
+    run: Run,
+    environment: dict[str, str],
+    sources: str,
+    usable: Sequence[str],
+    cell: Cell,
 ) -> Done:
     """A cell in another process, which finds the same files as the one that asks."""
-    with _loading:  # a Dask worker may have several threads
+    with _measuring:
         os.environ.update(environment)
         if _sources(*environment.items()) != sources:
             raise RuntimeError("a worker has other sources of quatspline than this process")
-    return _measured(place, name, run, cell)
+        lacking = _lacking(usable, run, cell)
+        return Done(place, "", lacking) if lacking else _measured(place, name, run, cell)
+
+
+def _lacking(usable: Sequence[str], run: Run, cell: Cell) -> str | None:
+    """Why this process cannot measure a cell that the one that asks could.
+
+    A scheme that fails here alone says nothing of the scheme: its row would be a wrong one.  A cell
+    that names no scheme may need any of the run's.
+    """
+    here = registry.found()
+    named = {*usable, *here} & {value for value in cell.values() if isinstance(value, str)}
+    needed = named or run.schemes or usable
+    for name in usable:
+        if name in needed and (name not in here or here[name].scheme is None):
+            reason = here[name].problem if name in here else "it is not found"
+            return (
+                f"scheme {name!r} can be used where the run started, not on this worker: {reason}"
+            )
+    return None
 
 
 def _measured(place: int, name: str, run: Run, cell: Cell) -> Done:
     """Measure a cell of an experiment that is found by its name (modules do not travel)."""
     try:
-        with _loading:
-            module = registry.load(experiment.found()[name], "experiment")
+        module = registry.load(experiment.found()[name], "experiment")
         rows = module.measure_cell(run, **cell)
         listed = [rows] if isinstance(rows, dict) else list(rows)
         return Done(place, json.dumps(listed, default=_plain))

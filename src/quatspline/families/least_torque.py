@@ -47,6 +47,10 @@ ROUNDING = 1e-12
 BAND = 18
 """Unknowns of a segment: two nodes with a turn, v and a each."""
 
+STALL, FLAT = 8, 1e-15
+"""Updates without a least change so far, and the share of E that the last of them would have gained by the gradient,
+which are rounding of the gradient: smaller changes cannot be had."""
+
 DAMPING, DAMPED, STUCK = 1e-4, 1e-3, 1e8
 """Levenberg's weight: the first, the largest of a step that may end it, the one to give up at."""
 
@@ -60,16 +64,17 @@ def _copy(source, target):
 
 @compiled
 def minimise(nodes, rates, h, m, tolerance, limit, segments, report):
-    """Minimise (1) for every track; fills segments and report, returns the energies."""
-    energies = np.empty(nodes.shape[0])
+    """Minimise (1) for every track; fills segments and report, returns the energies, and which tracks came to
+    rest at rounding, at a change above the tolerance."""
+    energies, rest = np.empty(nodes.shape[0]), np.empty(nodes.shape[0], dtype=np.bool_)
     for k in range(nodes.shape[0]):
-        energies[k] = _minimise(nodes[k], rates[k], h, m, tolerance, limit, report[k])
+        energies[k], rest[k] = _minimise(nodes[k], rates[k], h, m, tolerance, limit, report[k])
         for i in range(h.size):
             q, y = nodes[k, i], np.empty(15)
             _ends(nodes[k], rates[k], h, i, y)
             set_base(segments[k], i, q[0], q[1], q[2], q[3])
             report[k, REACH] = max(report[k, REACH], set_end_rates(segments[k], i, y))
-    return energies
+    return energies, rest
 
 
 @compiled
@@ -84,6 +89,7 @@ def _minimise(q, x, h, m, tolerance, limit, report):
     trial_q, trial_x = q.copy(), x.copy()
     energy = _energy(q, x, h)
     damping, change, done = 0.0, np.inf, 0
+    least, least_at, rest = np.inf, 0, False
     while done < limit:
         _normal_equations(q, x, h, m, matrix, gradient)
         accepted = False
@@ -104,9 +110,14 @@ def _minimise(q, x, h, m, tolerance, limit, report):
         q[:], x[:], energy, done = trial_q, trial_x, trial, done + 1
         if change <= tolerance and damping <= DAMPED:
             break
+        if change < least:
+            least, least_at = change, done
+        rest = done - least_at >= STALL and abs(np.sum(gradient * step)) <= FLAT * energy
+        if rest:
+            break
         damping = 0.1 * damping if damping > DAMPING else 0.0
     report[ITERATIONS], report[CHANGE] = done, change
-    return energy
+    return energy, rest
 
 
 @inlined

@@ -7,25 +7,85 @@ in the body frame.  Faults stay in: they are measured, by version.
 
 from __future__ import annotations
 
+import os
+import threading
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from quatspline import quaternion
 from quatspline.curve import Curve
+from quatspline.forking import undivided
 from quatspline.keyframes import Keyframes
 from quatspline.quaternion import FloatArray
+
+_one = threading.RLock()
+
+
+def _renew() -> None:
+    global _one  # a child has not the thread that held it
+    _one = threading.RLock()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_renew)
 
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """No warning leaks from what runs inside: a peer's warnings are not its caller's business."""
-    with warnings.catch_warnings(), np.errstate(all="ignore"):
+    """No warning leaks from what runs inside: a peer's warnings are not its caller's business.
+
+    One thread at a time: the filters of warnings are the process's, so that of two threads the last
+    one out would leave the other's behind; and libraries need not bear several threads.
+    """
+    with _one, warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         yield
+
+
+_begun: set[str] = set()
+"""Libraries that this process has imported, or is about to."""
+
+
+@contextmanager
+def _alone(library: str) -> Iterator[None]:
+    """What runs inside imports a library; the first time no other process does beside it.
+
+    Two processes that compile functions of numba's `guvectorize` into one cache at once leave a
+    mixture there, which crashes whatever process loads it (numba's issue 10128).
+    """
+    if library in _begun:  # `quiet` keeps other threads out
+        yield
+        return
+    lock = _lock()
+    _begun.add(library)
+    try:
+        yield
+    except BaseException:
+        _begun.discard(library)
+        raise
+    finally:
+        if lock is not None:
+            lock.release()
+
+
+def _lock() -> Any:
+    """A lock of this user's processes, taken; None where there is no place for one."""
+    import platformdirs
+    from filelock import FileLock
+
+    base = Path(os.environ.get("QUATSPLINE_CACHE") or platformdirs.user_cache_dir("quatspline"))
+    try:
+        base.mkdir(parents=True, exist_ok=True)
+        lock = FileLock(base / "peers.lock")
+        lock.acquire()
+    except (OSError, NotImplementedError):
+        return None
+    return lock
 
 
 class PeerCurve(Curve):
@@ -40,7 +100,7 @@ class PeerCurve(Curve):
         return None
 
     def _build(self, keyframes: Keyframes, given: dict[str, Any]) -> None:
-        with quiet():
+        with undivided(), quiet(), _alone(self.peer or ""):
             super()._build(keyframes, given)
 
     def _evaluate(self, *arguments: Any) -> int:

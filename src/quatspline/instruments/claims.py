@@ -11,6 +11,11 @@ Source = Literal["ours", "peer", "paper"]
 Value = int | float | str | bool
 
 HOLDS, DEPARTS, UNKNOWN = "holds", "departs", "not measurable"
+UNDECIDED = "not decided at this size"
+"""It holds as far as it was tried, in a part of the cases that decide at full size."""
+
+SCHEME, PUBLICATION = "scheme", "publication"
+"""Whose fault a departure is: a curve does not owe what a publication says of it."""
 
 
 class Probe:
@@ -41,6 +46,7 @@ class Claim(NamedTuple):
     kept : whether a measured value agrees
     badness : the larger, the worse a value that agrees; of several cases the worst is shown
     unknown : why there are no probes
+    partial : whether probes are only a part of those that decide
     """
 
     scheme: str
@@ -51,14 +57,16 @@ class Claim(NamedTuple):
     kept: Callable[[Any], bool] = bool
     badness: Callable[[Any], float] = lambda value: 0.0
     unknown: str = ""
+    partial: bool = False
 
 
 def judged(claim: Claim) -> Row:
-    """The row of a claim: scheme, source, claim, claimed, measured, verdict, case, failure.
+    """The row of a claim: scheme, source, claim, claimed, measured, verdict, fault, case, failure.
 
     The case is the first, and so the simplest, at which the claim departs; otherwise the worst.  Cases
     that a scheme refuses or cannot solve say nothing about it: where all are of that kind the claim is
-    not measurable and ``failure`` gives the reason.
+    not measurable and ``failure`` gives the reason.  The fault of a departure is the scheme's, or the
+    publication's that says so.
     """
     base = {"scheme": claim.scheme, "source": claim.source, "claim": claim.text}
     base |= {"claimed": shown(claim.claimed)}
@@ -72,15 +80,19 @@ def judged(claim: Claim) -> Row:
             continue
         measured.append((probe, value))
         if not claim.kept(value):
-            return base | _verdict(DEPARTS, probe, value)
+            fault = PUBLICATION if claim.source == "paper" else SCHEME
+            return base | _verdict(DEPARTS, probe, value, fault)
     if not measured:
         case = str(claim.probes[0]) if claim.probes else None
-        return base | {"measured": None, "verdict": UNKNOWN, "case": case, "failure": refusal}
-    return base | _verdict(HOLDS, *max(measured, key=lambda item: claim.badness(item[1])))
+        nothing = {"measured": None, "verdict": UNKNOWN, "fault": None}
+        return base | nothing | {"case": case, "failure": refusal}
+    verdict = UNDECIDED if claim.partial else HOLDS
+    return base | _verdict(verdict, *max(measured, key=lambda item: claim.badness(item[1])))
 
 
-def _verdict(verdict: str, probe: Probe, value: Value) -> Row:
-    return {"measured": shown(value), "verdict": verdict, "case": str(probe), "failure": None}
+def _verdict(verdict: str, probe: Probe, value: Value, fault: str | None = None) -> Row:
+    row: Row = {"measured": shown(value), "verdict": verdict, "fault": fault}
+    return row | {"case": str(probe), "failure": None}
 
 
 def shown(value: Value) -> str:

@@ -15,11 +15,11 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from quatspline import quaternion
 from quatspline.curve import Curve
+from quatspline.instruments.breaks import UNBROKEN, breaks
 from quatspline.instruments.derivatives import closed_forms, one_sided, shape_rates
 from quatspline.instruments.trials import Row
-from quatspline.quaternion import FloatArray, IntArray
+from quatspline.quaternion import FloatArray
 
 QUANTITIES = ("q", "omega", "alpha", "jerk")
 UNITS = ("1", "rad/t", "rad/t^2", "rad/t^3")
@@ -43,14 +43,6 @@ FALLING = 0.05
 DENSE = 7
 """Samples a segment for the size of a quantity."""
 
-SUSPECTS = 16
-"""Intervals between samples searched for a leap: those that change most against their neighbours."""
-HALVINGS, GAP = 30, 1e-6
-"""Of an interval between samples, and the angle in rad above which what is left is a jump: nothing that a
-curve turns by in 1e-10 of a segment ..."""
-FASTER = 100.0
-"""... nor at this multiple of its rate over the interval."""
-
 AT_REST = 1e-12
 """A motion that turns by less in all, in rad, is at rest: what is left is rounding."""
 
@@ -58,21 +50,22 @@ AT_REST = 1e-12
 def jumps(curve: Curve, orders: Sequence[int] = (0, 1, 2, 3)) -> pd.DataFrame:
     """Jumps of a single-track curve, one row a derivative order asked for.
 
-    Columns: order (0 to 3), quantity, unit, jump (largest over the knots, in its unit, for order 0 also
-    inside segments, as an angle; lower is smoother), coarse_jump (with the tenfold step), size (largest
+    Columns: order (0 to 3), quantity, unit, jump (largest over the knots, in its unit, for orders 0, as an
+    angle, and 1 also inside segments; lower is smoother), coarse_jump (with the tenfold step), size (largest
     on the curve), relative (0 where the size itself is rounding), and continuous (a verdict).
     Derivatives are those of `shape_rates`.
     """
     at, step = _inner_knots(curve)
     gaps = [_jumps(curve, at, share * step) for share in STEPS]
-    gap = _gap(curve) if 0 in orders else 0.0
+    inside = breaks(curve) if {0, 1} & set(orders) else UNBROKEN
+    broken = (inside.leap, inside.corner, 0.0, 0.0)
     rows, sizes = [], _sizes(curve)
     for order in orders:
-        inside = 0.0 if order else gap
-        coarse, fine = (float(np.max(found[order], initial=inside)) for found in gaps)
+        coarse, fine = (float(np.max(found[order], initial=broken[order])) for found in gaps)
         size = sizes[order]
         floor = _floor(curve, order, size)
-        local = float(np.max(gaps[1][order] * step**order, initial=inside))
+        scaled = inside.scaled if order else inside.leap
+        local = float(np.max(gaps[1][order] * step**order, initial=scaled if order < 2 else 0.0))
         smooth = fine <= floor or fine <= FALLING * coarse or local <= rounding(curve, order)
         relative = fine / size if size > floor else 0.0
         names = (order, QUANTITIES[order], UNITS[order])
@@ -132,36 +125,6 @@ def _sizes(curve: Curve) -> list[float]:
     apart = np.diff(curve.times)[:, None, None] / DENSE
     slope = np.diff(alpha.reshape(-1, DENSE, 3), axis=1) / apart
     return [1.0, *(float(np.linalg.norm(x, axis=-1).max()) for x in (omega, alpha, slope))]
-
-
-def _gap(curve: Curve) -> float:
-    """The angle of the largest jump of the orientation inside segments, 0 without one.
-
-    Suspect intervals are halved, towards the larger change, until only a jump can be left of them.
-    """
-    t = _dense(curve)
-    change = quaternion.distance(curve(t[1:]), curve(t[:-1]))
-    suspects = _suspects(change)
-    lo, hi = t[suspects], t[suspects + 1]
-    rate = change[suspects] / (hi - lo)
-    for _ in range(HALVINGS):
-        middle = 0.5 * (lo + hi)
-        ends, inner = curve(np.stack([lo, hi])), curve(middle)
-        left = quaternion.distance(ends[0], inner) > quaternion.distance(inner, ends[1])
-        lo, hi = np.where(left, lo, middle), np.where(left, middle, hi)
-    left_over = quaternion.distance(curve(lo), curve(hi))
-    told = left_over > GAP + FASTER * rate * (
-        hi - lo
-    )  # times far from zero cannot be halved so often
-    return float(np.max(left_over[told], initial=0.0))
-
-
-def _suspects(change: FloatArray) -> IntArray:
-    """Intervals that may hold a leap: the one of the largest change, which hides a leap in a fast segment,
-    and those that change most against their neighbours, as a leap in a slow one does."""
-    around = np.pad(change, 1, mode="reflect")
-    relative = change / (around[:-2] + around[2:] + GAP)
-    return np.unique(np.append(np.argsort(relative)[-SUSPECTS:], np.argmax(change)))
 
 
 def rounding(curve: Curve, order: int) -> float:

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from quatspline.curve import Curve
+from quatspline.instruments.operations import OPERATIONS, SAMPLE, per_keyframe, per_sample
 from quatspline.instruments.timing import Contender, OverBudget, interleaved, repeated
 from quatspline.instruments.trials import reason
 
@@ -26,8 +27,6 @@ FACTOR = 10
 
 SLOW = 0.05
 """Calls that take this share of the budget are timed once: rounds of them would exceed it."""
-
-OPERATIONS = ("exps", "logs", "slerps")
 
 
 @dataclass(frozen=True)
@@ -137,14 +136,7 @@ def operations(curve: Curve, unit: str) -> dict[str, float]:
     """
     if not curve.operations:
         return dict.fromkeys(OPERATIONS, math.nan)
-    report = curve.solve_report
-    times = {unit: 1, f"{unit} and iteration": report.iterations if report is not None else 0}
-    counts = dict.fromkeys(OPERATIONS, 0.0)
-    for key, number in curve.operations.items():
-        operation, _, per = key.partition(" per ")
-        if operation in counts:
-            counts[operation] += number * times.get(per, 0)
-    return counts
+    return per_sample(curve) if unit == SAMPLE else per_keyframe(curve)
 
 
 def _seconds(call: Call) -> float:

@@ -45,9 +45,14 @@ def shape_rates(curve: Curve, t: FloatArray) -> tuple[FloatArray, FloatArray]:
 
     A peer's rates are a claim about its curve, so its orientations are differentiated.
     """
+    return rates_since(curve, curve.since(t))
+
+
+def rates_since(curve: Curve, since: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The same at times since the first keyframe: Unix times leave no digits inside a segment."""
     if closed_forms(curve):
-        return curve(t, 1), curve(t, 2)
-    return numeric.rates(curve._orientation, curve.since(t), curve.keyframes.knots)
+        return curve.inner(since, 1)[:, 0], curve.inner(since, 2)[:, 0]
+    return numeric.rates(curve._orientation, since, curve.keyframes.knots)
 
 
 def one_sided(

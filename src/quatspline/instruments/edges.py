@@ -1,10 +1,15 @@
-"""Edge cases: whether a scheme's curve is exact, wrong, not a number or refused, and by how much."""
+"""Edge cases: whether a scheme's curve is exact, wrong, not a number or refused, and by how much.
+
+A scheme is judged against what it claims: that a constant rate is kept, everywhere or away from the ends, and
+that keyframes are met.  Where it claims nothing it is off as it says; but no curve claims to go astray.
+"""
 
 from __future__ import annotations
 
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quatspline import quaternion
 from quatspline.curve import Curve
@@ -13,6 +18,8 @@ from quatspline.instruments.trials import Row, reason
 from quatspline.quaternion import FloatArray
 from quatspline.registry import scheme
 from quatspline.trajectories.edges import EdgeCase
+
+BoolArray = NDArray[np.bool_]
 
 EXACT = 1e-6
 """Errors below this share of the case's largest step are none: solvers stop at 1e-11 rad, and at half a
@@ -24,6 +31,13 @@ UNIT = 1e-9
 REST = 1e-12
 """Steps below this, in rad, are rounding of equal keyframes."""
 
+ASTRAY = 0.5
+"""A curve that is off by this share of a step has gone astray, whatever it claims: the long way round, or over a
+fold of its chart."""
+
+ENDS = 4
+"""Segments that feel the ends of an open curve which all keyframes shape."""
+
 SAMPLES = 10
 """Samples a segment, keyframes besides."""
 
@@ -31,16 +45,31 @@ SAMPLES = 10
 def edge_result(case: EdgeCase, name: str, **options: Any) -> Row:
     """What a scheme does with a case.
 
-    result: "exact" (the truth is met; keys are met, where there is none), "wrong", "NaN" (in orientation or
-    rates) or "error"; checked: what was compared; deviation: the largest angle in rad (lower is better);
-    relative: its share of the largest step between keyframes (of 1 rad at rest); failure: the reason.
+    result: "exact" (the truth is met; keys are met, where there is none), "as claimed" (off only where the scheme
+    claims nothing), "wrong", "NaN" (in orientation or rates) or "error"; checked: "truth", "truth inside"
+    (away from the ends) or "keys", by what the scheme claims; deviation: the largest angle in rad (lower is
+    better), of a wrong one where it is at fault; relative: its share of the largest step between keyframes
+    (of 1 rad at rest); failure: the reason.
     """
-    checked = "keys" if case.truth is None else "truth"
+    cls = scheme(name)
+    checked = "keys" if case.truth is None else CHECKED[_claim(case, cls)]
     try:
-        curve = scheme(name)(case.times, case.keyframes, closed=case.closed, **options)
+        curve = cls(case.times, case.keyframes, closed=case.closed, **options)
         return {"checked": checked, **_judged(case, curve)}
     except Exception as error:  # a refusal is a result, too
         return {"checked": checked, "result": "error", "failure": reason(error)}
+
+
+CHECKED = {"everywhere": "truth", "interior": "truth inside", "no": "keys"}
+"""What a curve is held against, by its claim of a constant rate."""
+
+
+def _claim(case: EdgeCase, curve: Curve | type[Curve]) -> str:
+    """The claim of a constant rate, as far as the case tries it: a curve at rest has to stay, one that closes
+    has no ends."""
+    if not _moves(case) or (case.closed and curve.constant_rate == "interior"):
+        return "everywhere"
+    return curve.constant_rate
 
 
 def _judged(case: EdgeCase, curve: Curve) -> Row:
@@ -49,18 +78,36 @@ def _judged(case: EdgeCase, curve: Curve) -> Row:
     bad = _unusable(curve, t, q)
     if bad is not None:
         return {"result": "NaN" if "not a number" in bad else "wrong", "failure": bad}
-    deviation = _deviation(case, curve, t, q)
-    relative = deviation / _step(case.keyframes)
-    result = "exact" if relative <= EXACT else "wrong"
-    return {"result": result, "deviation": deviation, "relative": relative}
+    off, claimed = _deviations(case, curve, t, q)
+    step = _step(case.keyframes)
+    faults = off[(off > EXACT * step) & (claimed | (off > ASTRAY * step))]
+    deviation = float(faults.max() if faults.size else off.max())
+    result = "wrong" if faults.size else "exact" if deviation <= EXACT * step else "as claimed"
+    return {"result": result, "deviation": deviation, "relative": deviation / step}
 
 
-def _deviation(case: EdgeCase, curve: Curve, t: FloatArray, q: FloatArray) -> float:
-    """The largest angle to the truth, or to the keyframes where there is no other."""
-    if case.truth is not None:
-        return float(quaternion.distance(q, case.truth(t)).max())
-    keys = curve(case.times[: len(case.keyframes)])
-    return float(quaternion.distance(keys, case.keyframes).max())
+def _deviations(
+    case: EdgeCase, curve: Curve, t: FloatArray, q: FloatArray
+) -> tuple[FloatArray, BoolArray]:
+    """Angles to the truth, or to the keyframes where there is no other, and where they are claimed to be none."""
+    if case.truth is None:
+        keys = curve(case.times[: len(case.keyframes)])
+        off = quaternion.distance(keys, case.keyframes)
+        return off, np.full(off.shape, curve.interpolates)
+    key = np.arange(t.size) % SAMPLES == 0
+    claimed = _kept(case, curve, t) | (key if curve.interpolates else False)
+    return quaternion.distance(q, case.truth(t)), claimed
+
+
+def _kept(case: EdgeCase, curve: Curve, t: FloatArray) -> BoolArray:
+    """At which times (m,) a constant rate is claimed to be kept."""
+    claim = _claim(case, curve)
+    if claim != "interior":
+        return np.full(t.shape, claim == "everywhere")
+    margin = ENDS if curve.support is None else curve.support // 2 - 1
+    if 2 * margin >= len(case.times):
+        return np.zeros(t.shape, dtype=bool)
+    return np.asarray((t >= case.times[margin]) & (t <= case.times[-1 - margin]))
 
 
 def _unusable(curve: Curve, t: FloatArray, q: FloatArray) -> str | None:
@@ -73,8 +120,16 @@ def _unusable(curve: Curve, t: FloatArray, q: FloatArray) -> str | None:
 
 
 def _step(keyframes: FloatArray) -> float:
-    step = float(quaternion.distance(keyframes[1:], keyframes[:-1]).max())
+    step = _largest(keyframes)
     return step if step > REST else 1.0
+
+
+def _moves(case: EdgeCase) -> bool:
+    return _largest(case.keyframes) > REST
+
+
+def _largest(keyframes: FloatArray) -> float:
+    return float(quaternion.distance(keyframes[1:], keyframes[:-1]).max())
 
 
 def _samples(times: FloatArray) -> FloatArray:

@@ -1,51 +1,219 @@
-"""Fairness: torque energy, jerk energy, arc length and peak acceleration of a curve."""
+"""Fairness: torque energy, jerk energy, arc length and peak acceleration of a curve.
+
+Every segment is cut into panels, and panels are halved until two levels agree: a curve that turns sharply
+inside a segment needs panels there and nowhere else.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 
 from quatspline.curve import Curve
-from quatspline.instruments.derivatives import rates
+from quatspline.instruments.continuity import rounding
+from quatspline.instruments.derivatives import closed_forms, rates_since
 from quatspline.quaternion import FloatArray
 
-PANELS, POINTS = 4, 5
-"""Gauss-Legendre panels a segment and points a panel: exact to rounding for smooth segments."""
+PANELS, POINTS = 2, 5
+"""Gauss-Legendre panels a segment to begin with, and points a panel."""
+
+AGREE = np.array([1e-7, 1e-6, 1e-7])
+"""Two levels agree to these shares of torque, jerk and length; what is left is less, as the finer level counts."""
+
+DIVERGES = 0.1
+"""A jerk that two levels still disagree on by this share, at the last, is infinite: alpha jumps in a segment."""
+
+HALVINGS, MOST = 20, 64
+"""Of a panel at most: what jumps inside a segment is then told to 1e-6 of the segment.  And panels a segment at
+most, on average over the curve: more would be refining rounding."""
+
+STENCIL_HALVINGS, STENCIL_MOST = 3, 16
+"""The same of curves known by stencils on their orientations, which reach over 5 % of a segment: narrower panels
+would not see more."""
+
+ESTIMATED, CANDIDATES, NEAR = 9, 8, 0.95
+"""Places in a panel at which the peak is estimated, panels in which it is then looked for, and the share of the
+largest estimate that such a panel has at least."""
+
+GRID, ZOOMS = 5, 7
+"""Samples of a search for the peak, and how often its interval is halved."""
+
+
+class _Panels(NamedTuple):
+    """Pieces of segments, not across a keyframe: time since the first keyframe at their left ends (p,),
+    widths (p,), spacings of their keyframes (p,)."""
+
+    left: FloatArray
+    width: FloatArray
+    spacing: FloatArray
+
+    def times(self, u: FloatArray) -> FloatArray:
+        """Times (p, k) at shares u (k,) of the panels."""
+        return self.left[:, None] + self.width[:, None] * u
+
+    def picked(self, which: FloatArray) -> _Panels:
+        """Those of a mask or index."""
+        return _Panels(self.left[which], self.width[which], self.spacing[which])
+
+    def halves(self) -> _Panels:
+        """Twice as many, each pair in place of one."""
+        width = np.repeat(0.5 * self.width, 2)
+        left = np.repeat(self.left, 2)
+        left[1::2] += width[1::2]
+        return _Panels(left, width, np.repeat(self.spacing, 2))
+
+
+_Level = tuple[_Panels, FloatArray, FloatArray]
+"""Panels, alpha at their nodes (p, POINTS, 3), and their integrals of torque, jerk and length (p, 3)."""
 
 
 def fairness(curve: Curve) -> dict[str, float]:
-    """Integrals and peaks of a single-track curve; lower is fairer.
+    """Integrals and peaks of a single-track curve as it runs between keyframes; lower is fairer.
 
     torque: integral of |alpha|^2 (rad^2/t^3), infinite in truth where the velocity jumps; jerk:
-    integral of |alpha'|^2 (rad^2/t^5); length: integral of |omega| (rad); peak: max |alpha| (rad/t^2).
+    integral of |alpha'|^2 (rad^2/t^5), infinite where alpha is seen to jump inside a segment; length:
+    integral of |omega| (rad); peak: max |alpha| (rad/t^2), on both sides of every keyframe too.  Panels
+    are halved until torque and length agree to 1e-7 and jerk to 1e-6, or as far as rounding of the rates
+    lets them.
     """
-    t, weight, width = _nodes(curve.times)
-    omega, alpha = rates(curve, t)
-    panels = alpha.reshape(-1, POINTS, 3)
-    jerk = np.einsum("ij,pjk->pik", _slopes(), panels).reshape(-1, 3) / width[:, None]
-    return {
-        "torque": float(weight @ np.einsum("mi,mi->m", alpha, alpha)),
-        "jerk": float(weight @ np.einsum("mi,mi->m", jerk, jerk)),
-        "length": float(weight @ np.linalg.norm(omega, axis=-1)),
-        "peak": float(np.linalg.norm(alpha, axis=-1).max()),
-    }
+    panels, alpha, integrals = _gathered(list(_settled(curve)))
+    torque, jerk, length = map(float, integrals.sum(axis=0))
+    peak = max(_peak_at_knots(curve), _peak_inside(curve, panels, alpha))
+    return {"torque": torque, "jerk": jerk, "length": length, "peak": peak}
 
 
-def _nodes(times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Times (m,), weights (m,) and panel widths (m,) of the quadrature over the domain."""
-    u, w = np.polynomial.legendre.leggauss(POINTS)
-    edges = np.linspace(times[:-1], times[1:], PANELS + 1, axis=1)
-    left, width = edges[:, :-1].reshape(-1), np.diff(edges, axis=1).reshape(-1)
-    t = left[:, None] + width[:, None] * (0.5 + 0.5 * u)
-    weights = 0.5 * width[:, None] * w
-    return t.reshape(-1), weights.reshape(-1), np.repeat(width, POINTS)
+def _gathered(levels: list[_Level]) -> _Level:
+    """The settled panels of all levels as one."""
+    panels, alpha, integrals = zip(*levels, strict=True)
+    joined = _Panels(*(np.concatenate(column) for column in zip(*panels, strict=True)))
+    return joined, np.concatenate(alpha), np.concatenate(integrals)
+
+
+# -- integrals ----------------------------------------------------------------------------------
+
+
+def _settled(curve: Curve) -> Iterator[_Level]:
+    """Panels whose integrals (p, 3) agree with those of the level above, with alpha (p, POINTS, 3)."""
+    knots = curve.keyframes.knots
+    halvings, most = (HALVINGS, MOST) if closed_forms(curve) else (STENCIL_HALVINGS, STENCIL_MOST)
+    span, budget = knots[-1], most * (len(knots) - 1)
+    coarse = _whole(knots)
+    before = _measured(curve, coarse)[1]
+    done = np.zeros(3)
+    for level in range(halvings + 1):
+        fine = coarse.halves()
+        alpha, integrals = _measured(curve, fine)
+        sums = integrals.reshape(-1, 2, 3).sum(axis=1)
+        total = done + sums.sum(axis=0)
+        off = np.abs(sums - before) - _rounding(curve, coarse, sums)
+        budget -= len(fine.left)
+        unsettled = (off > AGREE * total * (coarse.width / span)[:, None]).any(axis=1)
+        enough = (off[unsettled].sum(axis=0) <= AGREE * total).all()
+        if enough or level == halvings or budget < 0:
+            if closed_forms(curve) and off[unsettled, 1].sum() > DIVERGES * total[1]:
+                integrals[:, 1] = np.inf
+            unsettled[:] = False
+        halves = np.repeat(unsettled, 2)
+        yield fine.picked(~halves), alpha[~halves], integrals[~halves]
+        if not unsettled.any():
+            return
+        done = done + sums[~unsettled].sum(axis=0)
+        coarse, before = fine.picked(halves), integrals[halves]
+
+
+def _whole(knots: FloatArray) -> _Panels:
+    spacing = np.diff(knots)
+    left = knots[:-1, None] + spacing[:, None] * (np.arange(PANELS) / PANELS)
+    h = np.repeat(spacing, PANELS)
+    return _Panels(left.reshape(-1), h / PANELS, h)
+
+
+def _measured(curve: Curve, panels: _Panels) -> tuple[FloatArray, FloatArray]:
+    """alpha at the nodes (p, POINTS, 3), and the integrals of torque, jerk and length (p, 3)."""
+    u, weights = _gauss()
+    shape = (-1, POINTS, 3)
+    omega, alpha = (x.reshape(shape) for x in rates_since(curve, panels.times(u).reshape(-1)))
+    jerk = np.einsum("ij,pjk->pik", _derived(), alpha) / panels.width[:, None, None]
+    squares = [np.einsum("pik,pik->pi", x, x) for x in (alpha, jerk, omega)]
+    squares[2] = np.sqrt(squares[2])
+    return alpha, np.stack([panels.width * (x @ weights) for x in squares], axis=1)
+
+
+def _rounding(curve: Curve, panels: _Panels, integrals: FloatArray) -> FloatArray:
+    """What rounding of the rates may leave in integrals (p, 3) of panels."""
+    h, width = panels.spacing, panels.width
+    speed, torque = (rounding(curve, order) / h**order for order in (1, 2))
+    jerk = torque * np.abs(_derived()).sum(axis=1).max() / width
+    squared = np.stack([torque, jerk], axis=1) ** 2 * width[:, None]
+    crossed = 2.0 * np.sqrt(integrals[:, :2] * squared)
+    return np.column_stack([squared + crossed, speed * width])
+
+
+# -- peaks --------------------------------------------------------------------------------------
+
+
+def _peak_at_knots(curve: Curve) -> float:
+    """The largest |alpha| on either side of a keyframe, where it is largest as a rule."""
+    knots = curve.keyframes.knots
+    return float(_sizes(curve, np.append(knots[:-1], np.nextafter(knots[1:], 0.0))).max())
+
+
+def _peak_inside(curve: Curve, panels: _Panels, alpha: FloatArray) -> float:
+    """The largest |alpha| in panels, looked for where the polynomial through the nodes is largest."""
+    estimates = np.linalg.norm(np.einsum("ij,pjk->pik", _estimating(), alpha), axis=-1)
+    highest = estimates.max(axis=1)
+    likely = np.argsort(highest)[-CANDIDATES:]
+    likely = likely[highest[likely] >= NEAR * highest.max()]
+    grid = panels.picked(likely).times(np.linspace(0.0, 1.0, ESTIMATED))
+    grid[:, -1] = np.nextafter(grid[:, -1], 0.0)  # of this panel's segment, not of the next
+    low, high = _around(grid, estimates[likely])
+    for _ in range(ZOOMS):
+        grid = np.linspace(low, high, GRID, axis=1)
+        sizes = _sizes(curve, grid.reshape(-1)).reshape(grid.shape)
+        low, high = _around(grid, sizes)
+    return float(sizes.max(initial=0.0))
+
+
+def _around(grid: FloatArray, sizes: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The neighbours (p,) of the largest of sizes in rows of a grid (p, k), or it itself at an end."""
+    rows, best = np.arange(len(grid)), sizes.argmax(axis=1)
+    low, high = np.maximum(best - 1, 0), np.minimum(best + 1, grid.shape[1] - 1)
+    low, high = grid[rows, low], grid[rows, high]
+    return low, high
+
+
+def _sizes(curve: Curve, since: FloatArray) -> FloatArray:
+    return np.asarray(np.linalg.norm(rates_since(curve, since)[1], axis=-1), dtype=float)
+
+
+# -- polynomials through the nodes of a panel ---------------------------------------------------
 
 
 @cache
-def _slopes() -> FloatArray:
+def _gauss() -> tuple[FloatArray, FloatArray]:
+    """Nodes and weights on the unit panel."""
+    u, weights = np.polynomial.legendre.leggauss(POINTS)
+    return 0.5 + 0.5 * u, 0.5 * weights
+
+
+@cache
+def _derived() -> FloatArray:
     """Slopes (POINTS, POINTS) at a unit panel's nodes of the quartic through values there."""
-    u = 0.5 + 0.5 * np.polynomial.legendre.leggauss(POINTS)[0]
-    powers = np.arange(POINTS)
+    u, powers = _gauss()[0], np.arange(POINTS)
     derivatives = powers * u[:, None] ** np.maximum(powers - 1, 0)
-    return derivatives @ np.linalg.inv(np.vander(u, increasing=True))
+    return np.asarray(derivatives @ _coefficients(), dtype=float)
+
+
+@cache
+def _estimating() -> FloatArray:
+    """Values (ESTIMATED, POINTS) over a unit panel, its ends included, of the same quartic."""
+    u = np.linspace(0.0, 1.0, ESTIMATED)
+    return np.asarray(np.vander(u, POINTS, increasing=True) @ _coefficients(), dtype=float)
+
+
+@cache
+def _coefficients() -> FloatArray:
+    return np.asarray(np.linalg.inv(np.vander(_gauss()[0], increasing=True)), dtype=float)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from quatspline import quaternion
+from quatspline.instruments.operations import executed
 from quatspline.instruments.probes import walked
 from quatspline.instruments.protocols import Protocol
 from quatspline.options import declared
@@ -87,17 +88,8 @@ def _operations(name: str, protocol: Protocol, case: str, frames: int) -> float:
     cls = scheme(name)
     known = declared(cls._fit)
     curve = cls.from_keyframes(keyframes, **{k: v for k, v in SOLVE.items() if k in known})
-    iterations = curve.solve_report.iterations if curve.solve_report else 0
-    fitted = keyframes.count * (frames if protocol == "per-frame" else 1)
-    times = {"sample": frames, "keyframe": fitted, "keyframe and iteration": fitted * iterations}
-    weights = {"exps": 1.0, "logs": 1.0, "slerps": SLERP}
-    split = {key: key.partition(" per ") for key in curve.operations}
-    return sum(
-        weights.get(operation, 0.0) * number * times[unit]
-        for (operation, _, unit), number in zip(
-            split.values(), curve.operations.values(), strict=True
-        )
-    )
+    counts = executed(curve, frames, frames if protocol == "per-frame" else 1).total
+    return counts["exps"] + counts["logs"] + SLERP * counts["slerps"]
 
 
 def iterations(case: str = "key") -> int:

@@ -137,10 +137,17 @@ QUESTIONS = (
 )
 
 
+MARGINS = {"torque": 1.05, "nanoseconds_per_sample": 2.0}
+"""Factors by which the best has to lead in a table of quick size: medians of few sets, and short rounds, tell no
+less apart.  Counts are the same at any size."""
+
+
 def decisions(
     table: pd.DataFrame, questions: tuple[Question, ...] = QUESTIONS
 ) -> Iterator[tuple[Part, ...]]:
     """A sentence for every question that the table answers; its names and numbers are its cells.
+
+    Where a table of quick size does not tell the best from the next, the sentence says so.
 
     Parameters
     ----------
@@ -149,16 +156,33 @@ def decisions(
     """
     ledger = Ledger(lambda name: table)
     for question in questions:
-        best = _best(question, table)
-        if best is not None:
-            yield _sentence(question, ledger, best)
+        ranked = _ranked(question, table)
+        if not len(ranked):
+            continue
+        best = str(ranked["scheme"].iloc[0])
+        yield (
+            _sentence(question, ledger, best)
+            if _decided(question, ranked)
+            else said(
+                f"{question.wish}: not decided at {{size}} size.",
+                size=ledger(TABLE, "run_size", scheme=best),
+            )
+        )
 
 
-def _best(question: Question, table: pd.DataFrame) -> str | None:
-    """The scheme that answers a question; the first by name of those that tie."""
+def _decided(question: Question, ranked: pd.DataFrame) -> bool:
+    """Whether the size of the table tells the best from the next."""
+    if "run_size" not in ranked or ranked["run_size"].iloc[0] != "quick" or len(ranked) < 2:
+        return True
+    first, second = ranked[question.by].iloc[:2]
+    return bool(second >= MARGINS.get(question.by, 1.0) * first)
+
+
+def _ranked(question: Question, table: pd.DataFrame) -> pd.DataFrame:
+    """The schemes that answer a question, the best first; by name those that tie."""
     needed = {question.by, *question.equal, *question.least, *question.unlike}
     if needed - set(table):
-        return None
+        return table.iloc[:0]
     fit = table[list(needed)].notna().all(axis=1)
     for column, value in question.equal.items():
         fit &= table[column] == value
@@ -166,8 +190,7 @@ def _best(question: Question, table: pd.DataFrame) -> str | None:
         fit &= table[column].astype(float) >= least
     for column, value in question.unlike.items():
         fit &= table[column] != value
-    ranked = table[fit].sort_values([question.by, "scheme"])
-    return str(ranked["scheme"].iloc[0]) if len(ranked) else None
+    return table[fit].sort_values([question.by, "scheme"])
 
 
 def _sentence(question: Question, ledger: Ledger, best: str) -> tuple[Part, ...]:
@@ -181,5 +204,5 @@ def lines(table: pd.DataFrame) -> Iterator[str]:
     """The decisions as a Markdown list, each with the cells that it rests on."""
     for parts in decisions(table):
         where = [str(cell) for part in parts if not isinstance(part, str) for cell in part.cells]
-        columns = ", ".join(f"`{cell.rsplit('.', 1)[1]}`" for cell in where[1:])
+        columns = ", ".join(f"`{cell.rsplit('.', 1)[1]}`" for cell in where[1:] or where)
         yield f"- {''.join(map(str, parts))} Cells: `{where[0].rsplit('.', 1)[0]}`, {columns}."

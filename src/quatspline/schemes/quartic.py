@@ -33,7 +33,7 @@ class QuarticSpline(SegmentCurve):
     support = 4
     constant_rate = "interior"
     family = MIDDLE
-    operations = {"exps per sample": 3, "logs per keyframe": 1}
+    operations = {"exps per sample": 3, "logs per segment": 1}
 
     def _fit(self, keyframes: Keyframes) -> None:
         self._solve(FIT, np.array([3.0]))

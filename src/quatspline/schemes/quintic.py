@@ -33,7 +33,7 @@ class QuinticSpline(SegmentCurve):
     support = 4
     constant_rate = "interior"
     family = MIDDLE
-    operations = {"exps per sample": 3, "logs per keyframe": 1}
+    operations = {"exps per sample": 3, "logs per segment": 1}
 
     def _fit(self, keyframes: Keyframes, *, curvature: float = 1.0) -> None:
         self.order = 3 if curvature == 1.0 else 2

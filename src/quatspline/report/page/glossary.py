@@ -71,10 +71,21 @@ GLOSSARY: dict[str, Column] = {
     "exps": Column("exponentials for one keyframe or sample", "", "less"),
     "logs": Column("logarithms for one keyframe or sample", "", "less"),
     "slerps": Column("slerps for one keyframe or sample", "", "less"),
+    **{
+        f"{table}{operation}{part}": Column(f"{operation} executed {what}", "", "less")
+        for operation in ("exps", "logs", "slerps")
+        for table, part, what in (
+            ("table1.", "", "for all frames"),
+            ("", "_updates", "in updates and in the frames' samples"),
+            ("", "_rest", "in set-up and in the final residual"),
+        )
+    },
     "fairness.least": Column("least torque energy over the minimum", "", "less"),
     "fairness.median": Column("median of torque energy over the minimum", "", "less"),
     "fairness.q95": Column("95 % quantile of torque energy over the minimum", "", "less"),
     "fairness.worst": Column("worst torque energy over the minimum", "", "less"),
+    "worst_finite": Column("the same of sets where it is finite", "", "less"),
+    "jumping": Column("sets on which the velocity jumps or the curve leaps", "", "less"),
     "fairness.jerk_median": Column("median of jerk energy over that of the minimum", "", "less"),
     "fairness.length_median": Column("median of arc length over that of the minimum", "", "less"),
     "fairness.peak_median": Column(
@@ -99,7 +110,8 @@ GLOSSARY: dict[str, Column] = {
     "worst_failure": Column("the worst that was seen"),
     "claimed": Column("what is claimed"),
     "measured": Column("what was measured in the case"),
-    "verdict": Column("holds, departs, or not measurable"),
+    "verdict": Column("holds, departs, not measurable, or not decided at this size"),
+    "fault": Column("whose a departure is: the scheme's or the publication's"),
     "claims.case": Column("a line of Python that prints what was measured"),
     "iterations.median": Column("median iterations", "", "less"),
     "iterations.q95": Column("95 % quantile of iterations", "", "less"),
