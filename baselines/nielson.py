@@ -24,7 +24,7 @@ METHOD, BY_RESIDUAL, TOLERANCE, LIMIT, STATIONARY, TENSION = range(6)
 METHODS = ("jacobi", "gauss-seidel", "newton")
 JACOBI, GAUSS_SEIDEL, NEWTON = range(3)
 
-NEWTON_OPERATIONS = {
+NEWTON_OPERATIONS: dict[str, float] = {
     "slerps per sample": 6,
     "exps per keyframe and iteration": 7,
     "logs per keyframe and iteration": 2,
