@@ -178,6 +178,7 @@ class Kim(SegmentCurve):
     support = None
     constant_rate = "everywhere"
     iterative = True
+    measures_itself = True
     family = CUMULATIVE
     operations = {
         "exps per sample": 3,

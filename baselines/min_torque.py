@@ -45,6 +45,7 @@ class MinimumTorqueSpline(SegmentCurve):
         The iteration stops when the relative change of all unknowns meets the tolerance, or comes to rest above
         it, at rounding: no smaller change in eight updates, which by the gradient gain nothing.  That counts
         as converged, and `change` tells what was reached: about 1e-11 with one sub-interval.
+        The curve must also meet its keyframes within the tolerance, or 1e-9 rad where that is less.
     """
 
     title = "Minimum torque (reference)"
@@ -83,7 +84,8 @@ class MinimumTorqueSpline(SegmentCurve):
         )
         """E of every track, rad^2 / time^3."""
         self._set_segments(segments, report[:, REACH].max(), knots)
-        self._report("gauss-newton", "change", tolerance, report, "return")
+        within = max(tolerance, HIT)
+        self._report("gauss-newton", "change", tolerance, report, "return", within=within)
         self._conclude(self._rested(rest), on_failure)
 
     def _rested(self, rest: NDArray[np.bool_]) -> SolveReport:

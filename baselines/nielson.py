@@ -9,13 +9,27 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from quatspline._jit import CHANGE, ITERATIONS, REACH, RESIDUAL, compiled, fit_kernel
-from quatspline.families.arcs import SIZE as ARC
-from quatspline.families.arcs import set_arc
-from quatspline.families.nested import TRIANGLE, set_parameter
+from quatspline.families.bezier import set_controls
+from quatspline.families.bspline import keyframe
+from quatspline.families.nested import TRIANGLE
+from quatspline.families.nu_newton import newton_legs
 from quatspline.families.segments import SegmentCurve
 from quatspline.keyframes import Keyframes
 from quatspline.options import Count, OnFailure, Positive, Stop, per_keyframe
 from quatspline.primitives import arc_angle, slerp
+
+METHOD, BY_RESIDUAL, TOLERANCE, LIMIT, STATIONARY, TENSION = range(6)
+"""Places of the options among a fit kernel's parameters; the tensions are the rest."""
+
+METHODS = ("jacobi", "gauss-seidel", "newton")
+JACOBI, GAUSS_SEIDEL, NEWTON = range(3)
+
+NEWTON_OPERATIONS: dict[str, float] = {
+    "slerps per sample": 6,
+    "exps per keyframe and iteration": 7,
+    "logs per keyframe and iteration": 2,
+    "logs per segment": 3,
+}
 
 STALLED = 4 * np.finfo(float).eps
 """A relative change this small moves nothing any more."""
@@ -34,7 +48,20 @@ class Nielson(SegmentCurve):
         q_i = slerp(L_i, R_i, delta_i),  delta_i = h_i / (h_i + h_{i+1})                          (5)
 
     Segment i is de Casteljau's algorithm on (q_i, R_i, L_{i+1}, q_{i+1}).  The published iteration
-    solves (5) for each d_i in turn from the others [nielson2004].
+    solves (5) for each d_i in turn from the others [nielson2004].  At large steps or uneven times it
+    may rest at a wrong fixed point; its residual tells, and the solve counts as failed.
+
+    Options
+    -------
+    tension
+        nu_i, one for every keyframe or one each; not negative.
+    ends
+        "natural", or "stationary": zero phantom spacings, so that the curve starts and stops at rest.
+    method
+        "jacobi" (as published: all d_i from the last set), "gauss-seidel" (the newest at once), or
+        "newton" (`families.nu_newton`): the same curve in 3 to 6 updates, also where the others fail.
+    stop, tolerance, max_iterations, on_failure
+        As for every iterative scheme.
     """
 
     title = "Nielson's nu-quaternion spline"
@@ -59,7 +86,7 @@ class Nielson(SegmentCurve):
         *,
         tension: ArrayLike = 0.0,
         ends: Literal["natural", "stationary"] = "natural",
-        method: Literal["jacobi", "gauss-seidel"] = "jacobi",
+        method: Literal["jacobi", "gauss-seidel", "newton"] = "jacobi",
         stop: Stop = "residual",
         tolerance: Positive = 1e-6,
         max_iterations: Count = 2000,
@@ -75,12 +102,15 @@ class Nielson(SegmentCurve):
             self.order = 2
         if ends == "stationary" or (nu > 0.0).any():
             self.constant_rate = "no"
-        if stop == "residual":  # a residual, of 3 slerps, before the first update and after each
+        if method == "newton":
+            self.operations = NEWTON_OPERATIONS
+        elif stop == "residual":  # a residual, of 3 slerps, before the first update and after each
             more = {"inner keyframe and iteration": 5, "inner keyframe": 6}
             self.operations = type(self).operations | {
                 f"slerps per {k}": n for k, n in more.items()
             }
-        switches = [method == "jacobi", stop == "residual", tolerance, max_iterations]
+        limit = min(max_iterations, 2**53)
+        switches = [METHODS.index(method), stop == "residual", tolerance, limit]
         parameters = np.array([*switches, ends == "stationary", *nu], dtype=float)
         self._report(method, stop, tolerance, self._solve(FIT, parameters), on_failure)
 
@@ -184,12 +214,8 @@ def _residual(d, first, last, weights, sign, q):
 @compiled
 def _iterate(q, weights, closed, sign, parameters, report):
     """The published iteration from d = q; fills the report."""
-    jacobi, by_residual, tolerance, limit = (
-        parameters[0],
-        parameters[1],
-        parameters[2],
-        parameters[3],
-    )
+    jacobi, by_residual = parameters[METHOD] == JACOBI, parameters[BY_RESIDUAL] > 0.0
+    tolerance, limit = parameters[TOLERANCE], parameters[LIMIT]
     n = q.shape[0]
     first, last = (0, n) if closed else (1, n - 1)
     d, old = q.copy(), q.copy()
@@ -219,22 +245,31 @@ def _iterate(q, weights, closed, sign, parameters, report):
     return d
 
 
+@compiled
+def _set_iterated_legs(q, weights, closed, sign, parameters, legs, report):
+    """R_i and L_{i+1} of every segment by the published iteration."""
+    d = _iterate(q, weights, closed, sign, parameters, report)
+    for i in range(legs.shape[0]):
+        a, b, mu = _point(d, i, sign), _point(d, i + 1, sign), weights[i, 1]
+        right = slerp(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3], mu)
+        lam = weights[(i + 1) % q.shape[0], 0]
+        left = slerp(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3], lam)
+        for k in range(4):
+            legs[i, 0, k], legs[i, 1, k] = right[k], left[k]
+
+
 @fit_kernel
 def FIT(q, h, closed, sign, parameters, segments, report):
     """Solve for the control quaternions, then store de Casteljau's arcs of every segment."""
-    weights = _weights(h, closed, parameters[4] > 0.0, parameters[5:])
-    d = _iterate(q, weights, closed, sign, parameters, report)
-    n = q.shape[0]
+    weights = _weights(h, closed, parameters[STATIONARY] > 0.0, parameters[TENSION:])
+    legs = np.empty((h.size, 2, 4))
+    if parameters[METHOD] == NEWTON:
+        by_change, limit = parameters[BY_RESIDUAL] == 0.0, int(parameters[LIMIT])
+        tolerance = parameters[TOLERANCE]
+        newton_legs(q, weights, closed, sign, tolerance, by_change, limit, legs, report)
+    else:
+        _set_iterated_legs(q, weights, closed, sign, parameters, legs, report)
     for i in range(h.size):
-        j = (i + 1) % n
-        p0 = _point(q, i, sign)
-        p3 = _point(q, i + 1, sign)
-        a, b, c = _point(d, i, sign), _point(d, i + 1, sign), _point(d, i, sign)
-        p1 = slerp(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3], weights[i, 1])
-        p2 = slerp(c[0], c[1], c[2], c[3], b[0], b[1], b[2], b[3], weights[j, 0])
-        r0 = set_arc(segments, i, 0, p0[0], p0[1], p0[2], p0[3], p1[0], p1[1], p1[2], p1[3])
-        r1 = set_arc(segments, i, ARC, p1[0], p1[1], p1[2], p1[3], p2[0], p2[1], p2[2], p2[3])
-        r2 = set_arc(segments, i, 2 * ARC, p2[0], p2[1], p2[2], p2[3], p3[0], p3[1], p3[2], p3[3])
-        for k in range(6):
-            set_parameter(segments, i, k, 0.0, 1.0)
-        report[REACH] = max(report[REACH], r0, r1, r2)
+        right, left = keyframe(legs[i], 0), keyframe(legs[i], 1)
+        reach = set_controls(segments, i, _point(q, i, sign), right, left, _point(q, i + 1, sign))
+        report[REACH] = max(report[REACH], reach)

@@ -10,13 +10,13 @@ import numpy as np
 from quatspline._jit import CHANGE, ITERATIONS, RESIDUAL, compiled, fit_kernel, inlined
 from quatspline.families import bspline
 from quatspline.families.block_tridiagonal import backward, forward, workspace
+from quatspline.families.mean_leaps import leaps, share_a_half
 from quatspline.families.segments import SegmentCurve
 from quatspline.families.spherical_mean import (
     SIZE,
     SPHERICAL_MEAN,
     WEIGHTS,
     curvature,
-    mean,
     newton_step,
 )
 from quatspline.families.tangents import keyframe, moved
@@ -44,7 +44,8 @@ class SphericalAverage(SegmentCurve):
 
     solved for all d_i at once by Newton's method, block tridiagonal, with halved steps.  The iteration
     of the publication [buss2001] is not known to us.  A mean is unique while its four controls lie in
-    one open half of S^3.
+    one open half of S^3.  Beyond that the curve may leap between keyframes that it meets: where a
+    search along the segment finds a leap, the residual is infinite and the solve counts as failed.
 
     Options
     -------
@@ -233,8 +234,8 @@ def _control(q, d, i, sign, closed, clamped):
 
 @compiled
 def _write(q, h, d, sign, closed, clamped, segments):
-    """Constants of `spherical_mean`; returns the largest miss at a keyframe from either side."""
-    worst = 0.0
+    """Constants of `spherical_mean`; returns whether the curve leaps, as means that are not unique do."""
+    leaping = False
     for i in range(h.size):
         h0, h1 = (
             bspline.spacing(h, i - 2, closed, clamped),
@@ -258,15 +259,9 @@ def _write(q, h, d, sign, closed, clamped, segments):
                 segments[i, 4 * k + j] = points[k][j]
             segments[i, WEIGHTS + 1 + k] = c[k]
         segments[i, WEIGHTS], segments[i, SIZE - 1] = before, after
-        left = (before, 1.0 - before - c[0], c[0], 0.0)
-        total = c[0] + c[1] + c[2] + c[3]
-        right = (0.0, 1.0 - total, total - after, after)
-        start = mean(points[0], points[1], points[2], points[3], left)
-        end = mean(points[0], points[1], points[2], points[3], right)
-        for at, key in ((start, keyframe(q, i, sign)), (end, keyframe(q, i + 1, sign))):
-            x, y, z = log_between(*at, *key)
-            worst = max(worst, x * x + y * y + z * z)
-    return 2.0 * math.sqrt(worst)
+        if not (leaping or share_a_half(points)):
+            leaping = leaps(points, before, c, after)
+    return leaping
 
 
 @fit_kernel
@@ -284,4 +279,5 @@ def FIT(q, h, closed, sign, parameters, segments, report):
             d[i, 0], d[i, 1], d[i, 2], d[i, 3] = a
     first, last = (0, n) if closed else (1, n - 1)
     _iterate((q, m, p, sign, first, last), d, parameters, report)
-    report[RESIDUAL] = _write(q, h, d, sign, closed, clamped, segments)
+    if _write(q, h, d, sign, closed, clamped, segments):
+        report[RESIDUAL] = math.inf

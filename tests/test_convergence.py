@@ -105,7 +105,7 @@ def test_failures_are_told_by_kind():
 
 
 def test_solvers_are_found_by_what_a_scheme_declares():
-    assert convergence.methods(scheme("nielson")) == ("jacobi", "gauss-seidel")
+    assert convergence.methods(scheme("nielson")) == ("jacobi", "gauss-seidel", "newton")
     assert convergence.methods(scheme("min-torque")) == (None,)
 
 

@@ -21,7 +21,8 @@ class SolveReport:
     method, stop : the iteration, and the rule that ended it ("residual" or "change")
     iterations : updates made, the accepting one included
     change : relative change of all control quaternions by the last update
-    residual : largest miss at a keyframe, a rotation angle in rad
+    residual : largest miss at a keyframe, a rotation angle in rad: by the equations or by the finished
+        curve, measured on both sides, whichever is larger; infinite where it is no number
     converged : whether the stop rule was met at a right solution
     tolerance : what was asked for
 

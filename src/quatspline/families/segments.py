@@ -20,6 +20,7 @@ import numpy as np
 from quatspline._jit import CHANGE, CONSTANTS, ITERATIONS, RESIDUAL, RESULT, Kernel
 from quatspline.curve import Curve
 from quatspline.families.driver import described, fit_tracks, sample
+from quatspline.families.misses import largest_misses
 from quatspline.primitives import NEAR
 from quatspline.quaternion import BoolArray, FloatArray
 from quatspline.solving import WRONG_FIXED_POINT, SolveReport
@@ -59,6 +60,8 @@ class SegmentCurve(Curve):
     """A curve of segments with constants: see the module; subclasses fit, this evaluates."""
 
     family: Family
+    measures_itself: bool = False
+    """Whether its fit kernel reports what the constants that it wrote miss at keyframes."""
     batched = True
     _waiting: BoolArray | None = None
     """While a long curve is not wholly fitted: which chunks wait."""
@@ -70,7 +73,7 @@ class SegmentCurve(Curve):
         """Run a fit kernel over all tracks; returns its report, (K, 4).
 
         A long curve of a local scheme waits for calls and fits the windows that they ask for, unless
-        ``whole``: for parameters that belong to keyframes.
+        ``whole``: for parameters that belong to keyframes.  An iterative scheme reports on all.
         """
         frames = self._keyframes
         self.fit_kernel = kernel
@@ -80,7 +83,7 @@ class SegmentCurve(Curve):
         tracks, count = frames.tracks.shape[0], frames.spacings.shape[0]
         segments = np.empty((tracks, count, self.family.constants))
         report = np.zeros((tracks, 4))
-        if self.support is not None and count > LAZY and not whole:
+        if self.support is not None and count > LAZY and not (whole or self.iterative):
             self._waiting = np.ones(-(-count // CHUNK), bool)
             self._fitting = threading.Lock()
             # Kernels for any angle, now and later: a value must not depend on what was called before.
@@ -155,22 +158,49 @@ class SegmentCurve(Curve):
         self.kernels = self.family.near if reach <= NEAR else self.family.far
 
     def _report(
-        self, method: str, stop: str, tolerance: float, report: FloatArray, on_failure: str
+        self,
+        method: str,
+        stop: str,
+        tolerance: float,
+        report: FloatArray,
+        on_failure: str,
+        *,
+        within: float | None = None,
     ) -> None:
-        """Judge a solve by its report (K, 4) and keep it; see `Curve._conclude`."""
-        met = report[:, CHANGE if stop == "change" else RESIDUAL] <= tolerance
-        right = report[:, RESIDUAL] <= (WRONG_FIXED_POINT if stop == "change" else 1.0) * tolerance
+        """Judge a solve by its report (K, 4) and by what was written, and keep it; see `Curve._conclude`.
+
+        The residual is the larger of what the iteration says of its equations and what the finished
+        curve misses.  What is not a number counts as infinity, and is never within a tolerance.
+        ``within`` is the residual allowed: by default the tolerance, or WRONG_FIXED_POINT tolerances
+        where the change decides.
+        """
+        if within is None:
+            within = (WRONG_FIXED_POINT if stop == "change" else 1.0) * tolerance
+        change = _finite(report[:, CHANGE])
+        residual = _finite(report[:, RESIDUAL])
+        if not self.measures_itself:
+            residual = np.maximum(residual, self._misses())
+        met = (change if stop == "change" else residual) <= tolerance
+        right = residual <= within
         shape = self._keyframes.track_shape
-        columns = [
-            report[:, ITERATIONS].astype(int),
-            report[:, CHANGE],
-            report[:, RESIDUAL],
-            met & right,
-        ]
+        columns = [report[:, ITERATIONS].astype(int), change, residual, met & right]
         values: list[Any] = [c.reshape(shape) if shape else c[0].item() for c in columns]
         iterations, change, residual, converged = values
         solved = SolveReport(method, stop, iterations, change, residual, converged, tolerance)
         self._conclude(solved, on_failure)
+
+    def _misses(self) -> FloatArray:
+        """What the constants miss at keyframes, (K,) in rad; `families.misses`."""
+        frames = self._keyframes
+        misses: FloatArray = largest_misses(
+            self.kernels[0].address,
+            self.segment_knots,
+            self.segments,
+            frames.tracks,
+            frames.knots,
+            frames.signs,
+        )
+        return misses
 
     def _evaluate(
         self,
@@ -214,3 +244,8 @@ def _in_threads(kernel: tuple[Any, ...], t: FloatArray, out: FloatArray, count: 
         ]
         found = [(run.result(), a) for run, a in zip(runs, edges, strict=False)]
     return min((index + a for index, a in found if index >= 0), default=-1)
+
+
+def _finite(column: FloatArray) -> FloatArray:
+    """A column of a report, with infinity for what is not a number."""
+    return np.where(np.isnan(column), np.inf, column)
