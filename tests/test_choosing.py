@@ -149,13 +149,13 @@ def test_a_table_of_a_quick_source_is_quick(module, folder: Path) -> None:
 
     assert sized() == "full"
     cost = Results(folder).read_table("cost")
-    Results(folder).table("cost", cost.assign(run_size="quick"))
+    Results(folder, force=True).table("cost", cost.assign(run_size="quick"))
     assert sized() == "quick"
-    Results(folder).table("cost", cost.assign(run_size="full"))
+    Results(folder, force=True).table("cost", cost.assign(run_size="full"))
     fair = Results(folder).read_table("fairness")
-    Results(folder).table("fairness", fair.assign(sets=6))
+    Results(folder, force=True).table("fairness", fair.assign(sets=6))
     assert sized() == "quick"
-    Results(folder).table("fairness", fair.assign(sets=200))
+    Results(folder, force=True).table("fairness", fair.assign(sets=200))
     assert sized() == "full"
 
 
@@ -227,10 +227,10 @@ def test_what_a_scheme_claims_is_no_failure(module, folder: Path) -> None:
             {"scheme": "local-quintic", "result": ["exact", "exact", "wrong", "NaN"], **off}
         ),
     ]
-    Results(folder).table("edge-cases", pd.concat(rows))
+    Results(folder, force=True).table("edge-cases", pd.concat(rows))
     leap = {"case": "170 degrees, uneven", "scheme": "local-quintic", "measured_k": -1}
     tables = [Results(folder).read_table("continuity"), pd.DataFrame([leap])]
-    Results(folder).table("continuity", pd.concat(tables))
+    Results(folder, force=True).table("continuity", pd.concat(tables))
     table = module.derive(Run(quick=True), reader(folder)).set_index("scheme")
     assert pd.isna(table.loc["quartic", "worst_failure"])
     said = (
