@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import Annotated
 
 import numpy as np
 from numba import carray
@@ -19,7 +20,7 @@ from quatspline.families.chords import (
 from quatspline.families.segments import Family, SegmentCurve
 from quatspline.families.tangents import keyframe
 from quatspline.keyframes import Keyframes
-from quatspline.options import Count
+from quatspline.options import AtMost, Count
 
 # notation: y = 1 - cos(theta); constants of a segment: its chord, then the number of terms and the
 # correction of the last term.  Rows behind them hold f and its u-derivatives for both weights.
@@ -165,7 +166,7 @@ class FastSlerp(SegmentCurve):
     angle_error: float
     """The largest angle from slerp over all steps up to half a turn, measured, in rad."""
 
-    def _fit(self, keyframes: Keyframes, *, terms: Count = 8) -> None:
+    def _fit(self, keyframes: Keyframes, *, terms: Annotated[Count, AtMost(1000)] = 8) -> None:
         self.operations = {**type(self).operations, "polynomial terms per sample": 2 * terms}
         last, self.angle_error = _balanced(terms)
         self._solve(FIT, np.array([terms, last]))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Annotated
 
 import numpy as np
 
@@ -12,7 +13,10 @@ from quatspline.families.driver import fit_tracks
 from quatspline.families.segments import SegmentCurve
 from quatspline.families.tangents import keyframe, moved, step
 from quatspline.keyframes import Keyframes
-from quatspline.options import Count
+from quatspline.options import AtMost, Count
+
+MOST = 100_000_000
+"""Points kept, of 72 bytes each."""
 
 
 class IncrementalSlerp(SegmentCurve):
@@ -48,10 +52,15 @@ class IncrementalSlerp(SegmentCurve):
     family = ARC
     operations = {"slerps per sample": 1, "logs per segment": 65}
 
-    def _fit(self, keyframes: Keyframes, *, steps: Count = 64) -> None:
+    def _fit(self, keyframes: Keyframes, *, steps: Annotated[Count, AtMost(100_000)] = 64) -> None:
         self.operations = {**type(self).operations, "logs per segment": steps + 1}
         self.fit_kernel, self.parameters = FIT, np.array([float(steps)])
         h, tracks = keyframes.spacings, keyframes.tracks
+        points = tracks.shape[0] * h.size * steps
+        if points > MOST:
+            raise ValueError(
+                f"steps={steps}: {points:,} points are too many, at most {MOST:,} are kept"
+            )
         segments = np.empty((tracks.shape[0], h.size * steps, SIZE))
         report = np.zeros((tracks.shape[0], 4))
         reach = fit_tracks(
@@ -67,6 +76,8 @@ class IncrementalSlerp(SegmentCurve):
         # Every step is a segment of its own.
         knots = keyframes.knots[:-1, None] + h[:, None] / steps * np.arange(steps)
         knots = np.append(knots, keyframes.knots[-1])
+        if (np.diff(knots) <= 0.0).any():
+            raise ValueError(f"steps={steps}: float64 does not tell so many within a spacing apart")
         self._set_segments(segments, reach, knots)
 
 

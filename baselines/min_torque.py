@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,7 @@ from quatspline.families.least_torque import minimise
 from quatspline.families.rotation_vector import ROTATION_VECTOR
 from quatspline.families.segments import SegmentCurve
 from quatspline.keyframes import Keyframes
-from quatspline.options import Count, OnFailure, Positive
+from quatspline.options import AtMost, Count, OnFailure, Positive
 from quatspline.schemes.local_quintic import LocalQuinticSpline
 from quatspline.solving import SolveReport
 
@@ -64,7 +65,7 @@ class MinimumTorqueSpline(SegmentCurve):
         self,
         keyframes: Keyframes,
         *,
-        subintervals: Count = 4,
+        subintervals: Annotated[Count, AtMost(1000)] = 4,
         tolerance: Positive = 1e-6,
         max_iterations: Count = 200,
         on_failure: OnFailure = "raise",

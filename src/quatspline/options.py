@@ -44,6 +44,23 @@ class AtLeast:
         return f"at least {self.bound:g}"
 
 
+@dataclass(frozen=True)
+class AtMost:
+    """Marks a number whose magnitude must not exceed a bound."""
+
+    bound: float
+
+    def accepts(self, value: float) -> bool:
+        return abs(value) <= self.bound
+
+    def __str__(self) -> str:
+        return f"at most {self.bound:g} in magnitude"
+
+
+LARGEST = 1e6
+"""Of factors of a turn: beyond, angles have no digits left that one could mean."""
+
+Factor = Annotated[float, AtMost(LARGEST)]
 Positive = Annotated[float, Above(0.0)]
 Count = Annotated[int, AtLeast(1)]
 Stop = Literal["residual", "change"]
@@ -123,11 +140,14 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, numbers.Real) and not isinstance(value, bool)
 
 
-def per_keyframe(name: str, value: ArrayLike, count: int) -> FloatArray:
+def per_keyframe(name: str, value: ArrayLike, count: int, largest: float = LARGEST) -> FloatArray:
     """A scalar for every keyframe, or one number per keyframe -> (count,) float64."""
     array = real_array(name, value)
     if array.shape not in ((), (count,)):
         raise ValueError(f"{name} has shape {array.shape}: expected a number or {count} of them")
     array = np.array(np.broadcast_to(array, (count,)), dtype=float)
     refuse_infinite(name, array)
+    if (np.abs(array) > largest).any():
+        i = int(np.argmax(np.abs(array) > largest))
+        raise ValueError(f"{name}[{i}] = {array[i]:g}: must be {AtMost(largest)}")
     return array

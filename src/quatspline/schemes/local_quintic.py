@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
 
 from quatspline._jit import REACH, fit_kernel, inlined
@@ -9,7 +11,7 @@ from quatspline.families.local_rates import chords, continued, local_rates
 from quatspline.families.rotation_vector import ROTATION_VECTOR, set_base, set_end_rates
 from quatspline.families.segments import SegmentCurve
 from quatspline.keyframes import Keyframes
-from quatspline.options import Count
+from quatspline.options import AtMost, Count
 
 
 class LocalQuinticSpline(SegmentCurve):
@@ -43,7 +45,7 @@ class LocalQuinticSpline(SegmentCurve):
     family = ROTATION_VECTOR
     operations = {"exps per sample": 1, "logs per keyframe": 3}
 
-    def _fit(self, keyframes: Keyframes, *, window: Count = 3) -> None:
+    def _fit(self, keyframes: Keyframes, *, window: Annotated[Count, AtMost(100)] = 3) -> None:
         self.order = 4 if window > 1 else 2
         self.support = 2 * window + 2
         self._solve(FIT, np.array([float(window)]))

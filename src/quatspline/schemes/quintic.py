@@ -8,6 +8,7 @@ from quatspline.families.cumulative import MIDDLE
 from quatspline.families.four_keyframes import FIT
 from quatspline.families.segments import SegmentCurve
 from quatspline.keyframes import Keyframes
+from quatspline.options import Factor
 
 
 class QuinticSpline(SegmentCurve):
@@ -35,6 +36,6 @@ class QuinticSpline(SegmentCurve):
     family = MIDDLE
     operations = {"exps per sample": 3, "logs per segment": 1}
 
-    def _fit(self, keyframes: Keyframes, *, curvature: float = 1.0) -> None:
+    def _fit(self, keyframes: Keyframes, *, curvature: Factor = 1.0) -> None:
         self.order = 3 if curvature == 1.0 else 2
         self._solve(FIT, np.array([float(curvature)]))
