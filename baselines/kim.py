@@ -40,9 +40,9 @@ from quatspline.families.bspline import (
 from quatspline.families.bspline_newton import copy, descend, moved, newton, settle
 from quatspline.families.cumulative import CUMULATIVE
 from quatspline.families.segments import SegmentCurve
-from quatspline.inputs import real_array, refuse_infinite
+from quatspline.inputs import at, real_array, refuse_infinite
 from quatspline.keyframes import Keyframes
-from quatspline.options import Count, OnFailure, Positive, Stop
+from quatspline.options import LARGEST, Count, OnFailure, Positive, Stop
 from quatspline.primitives import between, mul
 from quatspline.quaternion import FloatArray
 
@@ -209,7 +209,7 @@ class Kim(SegmentCurve):
         parameters[:, METHOD] = method == "fixed-point"
         parameters[:, BY_CHANGE] = stop == "change"
         parameters[:, TOLERANCE] = tolerance
-        parameters[:, LIMIT] = min(max_iterations or LIMITS[method], 2**53)
+        parameters[:, LIMIT] = max_iterations or LIMITS[method]
         parameters[:, CLAMPED] = ends == "clamped"
         given = {"start_velocity": start_velocity, "end_velocity": end_velocity}
         for side, (name, velocity) in enumerate(given.items()):
@@ -243,5 +243,11 @@ def _velocities(name: str, given: Any, ends: str, keyframes: Keyframes) -> Float
         expected = " or ".join(map(str, shapes))
         raise ValueError(f"{name} has shape {array.shape}: expected {expected}")
     refuse_infinite(name, array)
+    h = keyframes.spacings[0 if name == "start_velocity" else -1]
+    if (np.abs(array) * h > LARGEST).any():
+        where = tuple(int(i) for i in np.argwhere(np.abs(array) * h > LARGEST)[0])
+        raise ValueError(
+            f"{at(name, where)} = {array[where]:g}: more than {LARGEST:g} rad on a segment of {h:g}"
+        )
     rows: FloatArray = array.astype(float).reshape(-1, 3)
     return rows

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 
 from quatspline._jit import REACH
 from quatspline.families.least_torque import minimise
@@ -15,7 +13,6 @@ from quatspline.families.segments import SegmentCurve
 from quatspline.keyframes import Keyframes
 from quatspline.options import AtMost, Count, OnFailure, Positive
 from quatspline.schemes.local_quintic import LocalQuinticSpline
-from quatspline.solving import SolveReport
 
 HIT = 1e-9
 """Largest miss at a keyframe in rad, where the tolerance is less: keyframes are nodes, so that a miss
@@ -80,22 +77,17 @@ class MinimumTorqueSpline(SegmentCurve):
         rates = np.concatenate([v, a], axis=-1) / 2
         segments = np.empty((len(tracks), h.size, self.family.constants))
         report = np.zeros((len(tracks), 4))
+        # E of every track, rad^2 / time^3, and which came to rest at rounding
         self.energy, rest = minimise(
             nodes, rates, h, m, tolerance, max_iterations, segments, report
         )
-        """E of every track, rad^2 / time^3."""
         self._set_segments(segments, report[:, REACH].max(), knots)
-        within = max(tolerance, HIT)
-        self._report("gauss-newton", "change", tolerance, report, "return", within=within)
-        self._conclude(self._rested(rest), on_failure)
-
-    def _rested(self, rest: NDArray[np.bool_]) -> SolveReport:
-        """The report, with tracks (K,) that came to rest at rounding as converged."""
-        report = self.solve_report
-        assert report is not None
-        shape = self.keyframes.track_shape
-        here = (rest.reshape(shape) if shape else rest[0]) & (
-            report.residual <= max(report.tolerance, HIT)
+        self._report(
+            "gauss-newton",
+            "change",
+            tolerance,
+            report,
+            on_failure,
+            within=max(tolerance, HIT),
+            settled=rest,
         )
-        converged = report.converged | here
-        return replace(report, converged=converged if shape else bool(converged))

@@ -22,8 +22,7 @@ Rates: with S = C^T B', P = C^T B (symmetric) and M = tr(P) I - P, derivatives o
 from __future__ import annotations
 
 import math
-import threading
-import warnings
+from contextlib import suppress
 from typing import Any, Literal
 
 import numpy as np
@@ -44,6 +43,7 @@ from quatspline.families.segments import Family, SegmentCurve
 from quatspline.keyframes import Keyframes
 from quatspline.primitives import cross, mul
 from quatspline.quaternion import FloatArray
+from quatspline.quiet import quiet
 
 # notation: the constants of a segment are a base quaternion (4), the middle of its arc, then those of
 # B seen from there (`_entry`), nine for each of f, r, g_0 ..., column by column: B[row, j] is entry
@@ -53,6 +53,8 @@ _B = CONSTANTS + COEFFICIENTS
 
 LIMIT = 60
 """Steps of the iteration: Newton takes 3 to 8, bisection beside a pole the rest."""
+MET = 1e-9
+"""Entries of the frames' matrices that a spline meets to this are met."""
 CLOSE = 1e-14
 """A step of g (about 3) that moves the orientation by rounding only."""
 
@@ -319,24 +321,23 @@ class MovingFrame(SegmentCurve):
 
 
 def _interpolated(t: FloatArray, axes: FloatArray, degree: int, conditions: Any) -> Any:
-    """scipy's spline; refused where its linear system is singular to working precision."""
-    from scipy.interpolate import make_interp_spline
-    from scipy.linalg import LinAlgError, LinAlgWarning
+    """scipy's spline; refused where its linear system is singular to working precision.
 
-    try:
-        with _filtering, warnings.catch_warnings():
-            warnings.simplefilter("error", LinAlgWarning)
-            return make_interp_spline(t, axes, degree, bc_type=conditions)
-    except (LinAlgWarning, LinAlgError):
+    A spline is smooth whatever its coefficients are: what an ill-conditioned system costs it is that it
+    misses the axes.
+    """
+    from scipy.interpolate import make_interp_spline
+
+    spline = None
+    with quiet(), suppress(np.linalg.LinAlgError):
+        spline = make_interp_spline(t, axes, degree, bc_type=conditions)
+    if spline is None or not np.abs(spline(t) - axes).max() <= MET:
         h = np.diff(t)
         raise ValueError(
             f"times: spacings in the ratio {h.max() / h.min():.3g} are too uneven for degree={degree}: "
             "the spline's linear system is singular to working precision"
-        ) from None
-
-
-_filtering = threading.Lock()
-"""Filters of warnings belong to the process."""
+        )
+    return spline
 
 
 def _conditions(t: FloatArray, k: int, ends: str, q: FloatArray, axes: FloatArray) -> Any:

@@ -92,7 +92,7 @@ class Nielson(SegmentCurve):
         max_iterations: Count = 2000,
         on_failure: OnFailure = "raise",
     ) -> None:
-        nu = per_keyframe("tension", tension, keyframes.count)
+        nu = per_keyframe("tension", tension, keyframes.count, math.inf)
         if (nu < 0.0).any():
             i = int(np.argmax(nu < 0.0))
             raise ValueError(f"tension[{i}] = {nu[i]:g}: must not be negative")
@@ -109,7 +109,7 @@ class Nielson(SegmentCurve):
             self.operations = type(self).operations | {
                 f"slerps per {k}": n for k, n in more.items()
             }
-        limit = min(max_iterations, 2**53)
+        limit = max_iterations
         switches = [METHODS.index(method), stop == "residual", tolerance, limit]
         parameters = np.array([*switches, ends == "stationary", *nu], dtype=float)
         self._report(method, stop, tolerance, self._solve(FIT, parameters), on_failure)
@@ -236,6 +236,12 @@ def _iterate(q, weights, closed, sign, parameters, report):
                 size += d[i, k] ** 2
         change = math.sqrt(moved / size)
         count += 1
+        if not change < math.inf:  # no number any more: the last controls that were some
+            change = math.inf
+            for i in range(n):
+                for k in range(4):
+                    d[i, k] = old[i, k]
+            break
         if by_residual:
             residual = _residual(d, first, last, weights, sign, q)
         if not (change > STALLED) or (not by_residual and change <= tolerance):

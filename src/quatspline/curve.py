@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from quatspline import keyframes as kf
 from quatspline import numeric, options, quaternion, solving, stamps
-from quatspline.inputs import FloatArray, at, real_array
+from quatspline.inputs import FloatArray, at, check_out, checked_threads, real_array
 from quatspline.solving import SolveReport
 
 if TYPE_CHECKING:
@@ -161,7 +161,7 @@ class Curve(abc.ABC):
     @property
     def times(self) -> NDArray[Any]:
         """Keyframe times as given, (n,) or, closed, (n + 1,): float64, but int64 for integers that
-        float64 does not hold, and datetimes and timedeltas as they are."""
+        float64 does not hold, and longdoubles, datetimes and timedeltas as they are."""
         return self._keyframes.times
 
     @cached_property
@@ -233,13 +233,13 @@ class Curve(abc.ABC):
         samples, slack = self._taken(t)
         if type(order) is not int or order not in self.orders:
             order = self._checked_order(order)
-        if frame not in ("body", "world"):
+        if not (isinstance(frame, str) and frame in ("body", "world")):
             raise ValueError(f"frame={frame!r}: expected 'body' or 'world'")
         if threads != 1:
-            threads = _checked_threads(threads)
+            threads = checked_threads(threads)
         shape = samples.shape + self._widths[order]
         if out is not None:
-            _check_out(out, shape)
+            check_out(out, shape)
         direct = out is not None and out.flags.carray and not np.may_share_memory(samples, out)
         result: FloatArray = out if direct and out is not None else np.empty(shape)
         flat, origin = samples.reshape(-1), self._origin
@@ -310,8 +310,8 @@ class Curve(abc.ABC):
         i = None if self.non_uniform else keyframes.uneven
         if i is not None:
             raise ValueError(
-                f"times[{i}] to times[{i + 1}] is {keyframes.spacings[i]:g}, not "
-                f"{keyframes.spacings[0]:g}: {self.name} takes uniform times only"
+                f"times[{i}] to times[{i + 1}] is {float(keyframes.spacings[i])!r}, not "
+                f"{float(keyframes.spacings[0])!r}: {self.name} takes uniform times only"
             )
         self._options = options.checked(self.name, type(self)._fit, given)
         self._keyframes = keyframes
@@ -391,15 +391,19 @@ class Curve(abc.ABC):
         """
         if type(t) is float and self._keyframes.plain:
             return np.array(t), self._slack
-        given = real_array("t", t) if self._keyframes.plain else stamps.stamps("t", t)
+        given = self._given(t)
         if self._keyframes.plain:
-            samples = given.astype(np.float64, copy=False)
+            with np.errstate(over="ignore"):  # a longdouble that float64 does not hold is infinite
+                samples = given.astype(np.float64, copy=False)
         else:
             samples = stamps.elapsed(given, self._keyframes.times[0])
-        kind = np.asarray(t).dtype
-        fine = kind.kind != "f" or kind.itemsize >= 8
-        slack = self._slack if fine and self._keyframes.plain else self._slack_of(kind)
+        exact = self._keyframes.plain and (given.dtype.kind != "f" or given.dtype.itemsize >= 8)
+        slack = self._slack if exact else self._slack_of(given.dtype)
         return (samples if samples.flags.carray else samples.copy()), slack
+
+    def _given(self, t: Any) -> NDArray[Any]:
+        """Samples as an array of what they are."""
+        return real_array("t", t) if self._keyframes.plain else stamps.stamps("t", t)
 
     @cached_property
     def _slack(self) -> float:
@@ -411,18 +415,13 @@ class Curve(abc.ABC):
         return EDGE * stamps.resolution(first, last, kind)
 
     def _refuse(self, t: Any, index: int) -> None:
-        given = np.asarray(t)
+        given = self._given(t)
         where = np.unravel_index(index, given.shape) if given.shape else ()
         label, stamp = at("t", where), given[where]
-        if given.dtype.kind in "mM":
-            raise ValueError(
-                f"{label} = {stamp}: outside the domain {' to '.join(map(str, self.domain))}"
-            )
-        value = stamp.item()
-        if not np.isfinite(float(value)):
-            raise ValueError(f"{label} = {value}: not a finite number")
-        first, last = self.domain
-        raise ValueError(f"{label} = {value!r}: outside the domain [{first!r}, {last!r}]")
+        if not stamps.finite(stamp):
+            raise ValueError(f"{label} = {stamp}: not a finite number")
+        first, last = map(stamps.shown, self.domain)
+        raise ValueError(f"{label} = {stamps.shown(stamp)}: outside the domain [{first}, {last}]")
 
     def _checked_order(self, order: Any) -> int:
         try:
@@ -446,27 +445,3 @@ def _rebuild(name: str, keyframes: kf.Keyframes, given: dict[str, Any]) -> Curve
     from quatspline.registry import scheme
 
     return scheme(name).from_keyframes(keyframes, **given)
-
-
-def _check_out(out: Any, shape: tuple[int, ...]) -> None:
-    """Refuse what cannot be filled as it is: subclasses of ndarray index in ways of their own."""
-    if type(out) is not np.ndarray or out.dtype != np.float64 or out.shape != shape:
-        kind = type(out)
-        found = (
-            f"{out.dtype} {out.shape}"
-            if kind is np.ndarray
-            else f"{kind.__module__}.{kind.__name__}"
-        )
-        raise ValueError(f"out: expected a float64 array of shape {shape}, got {found}")
-    if not out.flags.writeable:
-        raise ValueError("out: the array is read-only")
-
-
-def _checked_threads(threads: Any) -> int:
-    try:
-        count = operator.index(threads)
-    except TypeError:
-        raise ValueError(f"threads={threads!r}: expected a whole number, at least 1") from None
-    if count < 1:
-        raise ValueError(f"threads={count}: expected at least 1")
-    return count

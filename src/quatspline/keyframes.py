@@ -14,12 +14,16 @@ from quatspline._jit import compiled
 from quatspline.inputs import at, float_array, refuse_infinite, switch
 from quatspline.orientations import directions, explain_norms, orientations
 from quatspline.quaternion import ANTIPODAL, FLIP, FloatArray
+from quatspline.stamps import shown
 
 NORM_TOLERANCE = 1e-3
 """Quaternions off the unit sphere by more than this are refused; within it they are normalised."""
 
 UNIFORM = 1e-9
 """Spacings equal to this relative accuracy (and to the rounding of the times) count as uniform."""
+
+TICKS = 1e-4
+"""Integer stamps of even times are uneven by a tick or two: below this share of a spacing it is that."""
 
 SHORTEST, LONGEST = 2.0**-200, 2.0**200
 """Spacings within these bounds: kernels form powers of them, and accelerations their inverse square."""
@@ -37,6 +41,7 @@ class Keyframes:
     times : (n,) or, closed, (n + 1,), as given (`stamps.stamps`); the last of a closed set is the return
     knots : float64 times since the first, (n,) or (n + 1,): all work is done in these
     spacings : float64 knot spacings h, one a segment: (n - 1,) or, closed, (n,)
+    rounding : how far a spacing may be off for the digits or the ticks that the times were given in
     tracks : (K, n, 4) float64, unit quaternions, neighbours on one hemisphere unless kept as given
     track_shape : the shape whose product is K; () for a single track
     closed : whether the last keyframe leads back to the first
@@ -50,6 +55,7 @@ class Keyframes:
     track_shape: tuple[int, ...]
     closed: bool
     signs: FloatArray
+    rounding: float = 0.0
 
     @property
     def quaternions(self) -> FloatArray:
@@ -74,11 +80,6 @@ class Keyframes:
         return self.times.dtype == np.float64
 
     @property
-    def resolution(self) -> float:
-        """An ulp of the given times, in time units; 0 of integers and datetimes."""
-        return stamps.resolution(self.times[0], self.times[-1], self.times.dtype)
-
-    @property
     def unit(self) -> float:
         """The power of two nearest the mean spacing: knots / unit rounds nothing and suits any solver."""
         return (
@@ -90,8 +91,7 @@ class Keyframes:
     @property
     def uneven(self) -> int | None:
         """The first spacing that differs from spacing 0 by more than the times' rounding."""
-        h = self.spacings
-        rounding = 8 * self.resolution
+        h, rounding = self.spacings, self.rounding
         differs = np.flatnonzero(np.abs(h - h[0]) > UNIFORM * h[0] + rounding)
         return int(differs[0]) if differs.size else None
 
@@ -144,8 +144,11 @@ def prepare(
     if switch("normalise", normalise):
         q = directions(q)
     n = q.shape[0]
-    t, knots, spacings = _times(np.arange(n + closed) if times is None else times, n, closed)
-    if closing_sign is not None and (align or not closed or closing_sign not in (1, -1)):
+    t, knots, spacings, rounding = _times(
+        np.arange(n + closed) if times is None else times, n, closed
+    )
+    known = isinstance(closing_sign, int | np.integer) and closing_sign in (1, -1)
+    if closing_sign is not None and (align or not closed or not known):
         raise ValueError(
             f"closing_sign={closing_sign!r}: give 1 or -1, and only with closed=True, align=False"
         )
@@ -154,7 +157,7 @@ def prepare(
     tracks, signs = np.empty((rows.shape[1], n, 4)), np.empty(rows.shape[1])
     if not _take(rows, align, closed, float(closing_sign or 1), tracks, signs):
         explain_norms(q, NORM_TOLERANCE)
-    keyframes = Keyframes(t, knots, spacings, tracks, track_shape, closed, signs)
+    keyframes = Keyframes(t, knots, spacings, tracks, track_shape, closed, signs, rounding)
     if not align:
         _refuse_antipodes(keyframes)
     for array in (t, knots, spacings, tracks, signs):
@@ -190,22 +193,25 @@ def _take(q, align, closed, closing_sign, tracks, signs):
     return True
 
 
-def _times(given: Any, n: int, closed: bool) -> tuple[NDArray[Any], FloatArray, FloatArray]:
-    """Times as given, float64 times since the first, and spacings."""
+def _times(given: Any, n: int, closed: bool) -> tuple[NDArray[Any], FloatArray, FloatArray, float]:
+    """Times as given, float64 times since the first, spacings, and the rounding of these."""
     t = stamps.stamps("times", given)
     if t.shape != (n + closed,):
         if t.dtype.kind == "f":
             refuse_infinite("times", t)
         wanted = f"({n + closed},)" + (" (one more than keyframes: the return)" if closed else "")
         raise ValueError(f"times has shape {t.shape}: expected {wanted} for {n} keyframes")
+    kind = t.dtype
+    if kind.kind == "f" and kind.itemsize <= 8:
+        t = float_array("times", t)
     knots, spacings = np.empty(t.size), np.empty(t.size - 1)
-    if t.dtype == np.float64:
-        since, origin = t, t[0]
-    else:
-        since, origin = float_array("times", stamps.elapsed(t, t[0])), 0.0
-    if not _space(since, origin, knots, spacings):
-        _explain_times(t, knots)
-    return t.copy(), knots, spacings
+    plain = t.dtype == np.float64
+    since = t if plain else float_array("times", stamps.elapsed(t, t[0]))
+    if not _space(since, t[0] if plain else 0.0, knots, spacings):
+        _explain_times(t, knots, spacings)
+    rounding = 8 * stamps.resolution(t[0], t[-1], kind)
+    rounding += min(2 * stamps.tick(t), TICKS * float(knots[-1]) / max(spacings.size, 1))
+    return t.copy(), knots, spacings, rounding
 
 
 @compiled
@@ -221,7 +227,7 @@ def _space(t, origin, knots, spacings):
     return bad == 0
 
 
-def _explain_times(t: NDArray[Any], knots: FloatArray) -> None:
+def _explain_times(t: NDArray[Any], knots: FloatArray, spacings: FloatArray) -> None:
     """Refuse times that do not increase, or with spacings that float64 cannot carry."""
     if t.dtype.kind == "f":
         refuse_infinite("times", t)
@@ -229,37 +235,28 @@ def _explain_times(t: NDArray[Any], knots: FloatArray) -> None:
     if stuck.size:
         i = int(stuck[0]) + 1
         raise ValueError(
-            f"times[{i}] = {_shown(t[i])} does not exceed times[{i - 1}] = {_shown(t[i - 1])}: "
+            f"times[{i}] = {shown(t[i])} does not exceed times[{i - 1}] = {shown(t[i - 1])}: "
             "times must strictly increase"
         )
     if not np.isfinite(knots[-1]):
-        raise ValueError(f"times span {_shown(t[0])} to {_shown(t[-1])}: too long for float64")
-    equal = np.flatnonzero(knots[1:] <= knots[:-1])
+        raise ValueError(f"times span {shown(t[0])} to {shown(t[-1])}: too long for float64")
+    equal = np.flatnonzero(spacings <= 0.0)
     if equal.size:
         i = int(equal[0]) + 1
         raise ValueError(
-            f"times[{i}] = {_shown(t[i])} is too close to times[{i - 1}] = {_shown(t[i - 1])}, "
+            f"times[{i}] = {shown(t[i])} is too close to times[{i - 1}] = {shown(t[i - 1])}, "
             f"{float(knots[i])!r} after times[0]: float64 does not tell them apart"
         )
-    _explain_spacings(np.diff(knots))
-
-
-def _explain_spacings(h: FloatArray) -> None:
-    """Refuse the first spacing that is too short or too long to calculate with."""
-    for bound, wrong in (
-        (f"shorter than {SHORTEST:.2g}", h < SHORTEST),
-        (f"longer than {LONGEST:.2g}", h > LONGEST),
-        (f"below {DIGITS:.1g} of the whole duration, {h.sum():.3g}", h < DIGITS * h.sum()),
-    ):
-        if wrong.any():
-            i = int(np.argmax(wrong))
-            what = f"times[{i}] to times[{i + 1}] is {float(h[i])!r}, {bound}"
-            raise ValueError(f"{what}: float64 cannot carry its rates")
-
-
-def _shown(stamp: Any) -> str:
-    """A time as Python writes it."""
-    return str(stamp) if np.asarray(stamp).dtype.kind in "mM" else repr(stamp.item())
+    wrong = ~((spacings >= max(SHORTEST, DIGITS * knots[-1])) & (spacings <= LONGEST))
+    i = int(np.argmax(wrong))
+    h, bound = float(spacings[i]), f"longer than {LONGEST:.2g}"
+    if h < SHORTEST:
+        bound = f"shorter than {SHORTEST:.2g}"
+    elif h <= LONGEST:
+        bound = f"below {DIGITS:.1g} of the whole duration, {knots[-1]:.3g}"
+    raise ValueError(
+        f"times[{i}] to times[{i + 1}] is {h!r}, {bound}: float64 cannot carry its rates"
+    )
 
 
 def _refuse_antipodes(keyframes: Keyframes) -> None:

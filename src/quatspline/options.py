@@ -46,6 +46,19 @@ class AtLeast:
 
 @dataclass(frozen=True)
 class AtMost:
+    """Marks a number that must not exceed a bound."""
+
+    bound: float
+
+    def accepts(self, value: float) -> bool:
+        return value <= self.bound
+
+    def __str__(self) -> str:
+        return f"at most {self.bound:g}"
+
+
+@dataclass(frozen=True)
+class Within:
     """Marks a number whose magnitude must not exceed a bound."""
 
     bound: float
@@ -54,15 +67,18 @@ class AtMost:
         return abs(value) <= self.bound
 
     def __str__(self) -> str:
-        return f"at most {self.bound:g} in magnitude"
+        return f"between {-self.bound:g} and {self.bound:g}"
 
+
+LONG = 60
+"""Characters of a refused value that are shown."""
 
 LARGEST = 1e6
 """Of factors of a turn: beyond, angles have no digits left that one could mean."""
 
-Factor = Annotated[float, AtMost(LARGEST)]
+Factor = Annotated[float, Within(LARGEST)]
 Positive = Annotated[float, Above(0.0)]
-Count = Annotated[int, AtLeast(1)]
+Count = Annotated[int, AtLeast(1), AtMost(2**53)]  # all of them float64 numbers
 Stop = Literal["residual", "change"]
 OnFailure = Literal["raise", "return"]
 
@@ -106,7 +122,7 @@ def _check(name: str, value: Any, kind: Any) -> None:
         _check(name, value, base)
         for bound in bounds:
             if not bound.accepts(value):
-                raise ValueError(f"{name}={value!r}: must be {bound}")
+                raise ValueError(f"{name}={_shown(value)}: must be {bound}")
     elif origin in (Union, UnionType):
         _check_any(name, value, get_args(kind))
     elif kind is bool:
@@ -115,8 +131,8 @@ def _check(name: str, value: Any, kind: Any) -> None:
     elif kind is int:
         if isinstance(value, bool) or not isinstance(value, numbers.Integral):
             raise ValueError(f"{name}={value!r}: expected an integer")
-    elif kind is float and not (_is_number(value) and math.isfinite(value)):
-        raise ValueError(f"{name}={value!r}: expected a finite number")
+    elif kind is float and not (_is_number(value) and _is_finite(value)):
+        raise ValueError(f"{name}={_shown(value)}: expected a finite number")
 
 
 def _check_any(name: str, value: Any, kinds: tuple[Any, ...]) -> None:
@@ -136,6 +152,19 @@ def _check_any(name: str, value: Any, kinds: tuple[Any, ...]) -> None:
     raise refusals[0]
 
 
+def _is_finite(value: Any) -> bool:
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # an integer that float64 does not hold
+        return False
+
+
+def _shown(value: Any) -> str:
+    """A value as Python writes it, cut where that is long."""
+    text = repr(value)
+    return text if len(text) <= LONG else f"{text[:LONG]}..."
+
+
 def _is_number(value: Any) -> bool:
     return isinstance(value, numbers.Real) and not isinstance(value, bool)
 
@@ -149,5 +178,5 @@ def per_keyframe(name: str, value: ArrayLike, count: int, largest: float = LARGE
     refuse_infinite(name, array)
     if (np.abs(array) > largest).any():
         i = int(np.argmax(np.abs(array) > largest))
-        raise ValueError(f"{name}[{i}] = {array[i]:g}: must be {AtMost(largest)}")
+        raise ValueError(f"{name}[{i}] = {array[i]:g}: must be {Within(largest)}")
     return array

@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
 
-from quatspline.inputs import FloatArray, at, float_array, refuse_infinite
+from quatspline.inputs import FloatArray, at, float_array, refuse_infinite, refuse_masked
 
 COMPONENTS = ("w", "x", "y", "z")
+IMAGINARY = {"r": "w", "i": "x", "j": "y", "k": "z"}
+NAMED = re.compile(
+    r"(?:.*[\W_])?(?:q|quat|quaternion)?([wxyzrijk])(?:[\W_]+(?:q|quat|quaternion))?"
+)
+"""Names of columns that say their component: w, qw, quat_w, pose.orientation.w, q_i, x_q."""
+
+NEARLY = 1e-3
+"""Lengths and products of a matrix's rows this near 1 and 0 are those of a rotation."""
 
 
 def orientations(given: Any, least: int) -> FloatArray:
@@ -70,6 +79,7 @@ def explain_norms(q: FloatArray, tolerance: float) -> None:
 
 def _numbers(given: Any) -> Any:
     """Rotations, quaternions of other packages and named columns as plain numbers."""
+    refuse_masked("quaternions", given)
     if hasattr(given, "as_quat"):
         return given.as_quat(scalar_first=True)
     if isinstance(given, list | tuple) and given and hasattr(given[0], "as_quat"):
@@ -77,7 +87,7 @@ def _numbers(given: Any) -> Any:
     if hasattr(given, "columns"):
         return _ordered(given)
     try:
-        array = np.asanyarray(given)
+        array = np.asarray(given)
     except ValueError:
         return given
     if array.dtype.name == "quaternion":  # of numpy-quaternion: four float64, scalar first
@@ -94,11 +104,25 @@ def _listed(given: Any) -> list[Any]:
 
 
 def _ordered(table: Any) -> Any:
-    """A table's columns, scalar first where their names end in w, x, y and z."""
-    ends = [str(name).strip().lower()[-1:] for name in table.columns]
-    if sorted(ends) == sorted(COMPONENTS):
-        return table.iloc[:, [ends.index(name) for name in COMPONENTS]].to_numpy()
-    return table.to_numpy()
+    """A table's numbers, scalar first by the names of its columns; numbered columns as they stand."""
+    names = [name[-1] if isinstance(name, tuple) else name for name in table.columns]
+    numbers = table.to_numpy(dtype=np.float64, na_value=np.nan)
+    if not any(isinstance(name, str) for name in names):
+        return numbers
+    letters = [_letter(str(name)) for name in names]
+    if sorted(letters) != sorted(COMPONENTS):
+        quoted = ", ".join(map(repr, names))
+        raise ValueError(
+            f"quaternions: columns {quoted} do not say which is w, x, y and z; name them so, or give "
+            "an array, scalar first"
+        )
+    return numbers[:, [letters.index(name) for name in COMPONENTS]]
+
+
+def _letter(name: str) -> str:
+    """w, x, y or z of a column's name; "" where it does not say."""
+    found = NAMED.fullmatch(name.strip().lower())
+    return IMAGINARY.get(found[1], found[1]) if found else ""
 
 
 def _expected(q: FloatArray) -> str:
@@ -110,13 +134,13 @@ def _expected(q: FloatArray) -> str:
 def _homogeneous(q: FloatArray) -> bool:
     """Whether (..., 4, 4) holds rigid motions as matrices, whose rows are no four quaternions.
 
-    The last row is (0, 0, 0, 1); besides, some row is not of unit length, or without translation all
-    are orthogonal to each other.
+    The last row is (0, 0, 0, 1), and some row is not of unit length or the rotations are orthogonal.
     """
     if q.ndim < 3 or q.shape[-2:] != (4, 4) or not (q[..., 3, :] == (0.0, 0.0, 0.0, 1.0)).all():
         return False
     with np.errstate(all="ignore"):
         norms = np.linalg.norm(q, axis=-1)
-        grams = q @ np.swapaxes(q, -1, -2)
-    unit = np.abs(norms - 1.0) <= 1e-3
-    return not unit.all() or bool((np.abs(grams - np.eye(4)) <= 1e-6).all())
+        turn = q[..., :3, :3]
+        grams = turn @ np.swapaxes(turn, -1, -2)
+    unit = np.abs(norms - 1.0) <= NEARLY
+    return not unit.all() or bool((np.abs(grams - np.eye(3)) <= NEARLY).all())

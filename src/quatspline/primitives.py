@@ -55,7 +55,7 @@ INVERSE_PI = 1.0 / math.pi
 PI_HIGH = math.pi
 PI_LOW = 1.2246467991473532e-16
 
-OPPOSITE = 1e-18
+ANTIPODAL_SINE = 1e-18
 """Antipodes have a smaller sine than this: less than one rounding of their components."""
 
 TINY = 1e-300
@@ -332,6 +332,6 @@ def slerp(a, b, c, d, e, f, g, h, u):
     """
     theta, sine, cosine = arc_angle(a, b, c, d, e, f, g, h)
     s, k = sincos(u * theta)
-    q = s / max(sine, OPPOSITE if cosine < 0.0 else TINY)
+    q = s / max(sine, ANTIPODAL_SINE if cosine < 0.0 else TINY)
     p = k - cosine * q
     return p * a + q * e, p * b + q * f, p * c + q * g, p * d + q * h

@@ -158,6 +158,8 @@ def build(
 ) -> Curve:
     """The curve of a scheme through keyframes: the scheme's class called (see `Curve`).
 
+    Besides the scheme's own options, ``closing_sign`` and ``normalise`` are as there.
+
     Examples
     --------
     >>> import quatspline as qs

@@ -8,8 +8,6 @@ in the body frame.  Faults stay in: they are measured, by version.
 from __future__ import annotations
 
 import os
-import threading
-import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -22,30 +20,7 @@ from quatspline.curve import Curve
 from quatspline.forking import undivided
 from quatspline.keyframes import Keyframes
 from quatspline.quaternion import FloatArray
-
-_one = threading.RLock()
-
-
-def _renew() -> None:
-    global _one  # a child has not the thread that held it
-    _one = threading.RLock()
-
-
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_renew)
-
-
-@contextmanager
-def quiet() -> Iterator[None]:
-    """No warning leaks from what runs inside: a peer's warnings are not its caller's business.
-
-    One thread at a time: the filters of warnings are the process's, so that of two threads the last
-    one out would leave the other's behind; and libraries need not bear several threads.
-    """
-    with _one, warnings.catch_warnings(), np.errstate(all="ignore"):
-        warnings.simplefilter("ignore")
-        yield
-
+from quatspline.quiet import quiet
 
 _begun: set[str] = set()
 """Libraries that this process has imported, or is about to."""

@@ -166,13 +166,14 @@ class SegmentCurve(Curve):
         on_failure: str,
         *,
         within: float | None = None,
+        settled: BoolArray | None = None,
     ) -> None:
         """Judge a solve by its report (K, 4) and by what was written, and keep it; see `Curve._conclude`.
 
         The residual is the larger of what the iteration says of its equations and what the finished
         curve misses.  What is not a number counts as infinity, and is never within a tolerance.
         ``within`` is the residual allowed: by default the tolerance, or WRONG_FIXED_POINT tolerances
-        where the change decides.
+        where the change decides.  ``settled`` tracks (K,) are at rest, whatever their last change was.
         """
         if within is None:
             within = (WRONG_FIXED_POINT if stop == "change" else 1.0) * tolerance
@@ -181,6 +182,8 @@ class SegmentCurve(Curve):
         if not self.measures_itself:
             residual = np.maximum(residual, self._misses())
         met = (change if stop == "change" else residual) <= tolerance
+        if settled is not None:
+            met = met | settled
         right = residual <= within
         shape = self._keyframes.track_shape
         columns = [report[:, ITERATIONS].astype(int), change, residual, met & right]
