@@ -247,13 +247,15 @@ def _explain_times(t: NDArray[Any], knots: FloatArray, spacings: FloatArray) -> 
             f"times[{i}] = {shown(t[i])} is too close to times[{i - 1}] = {shown(t[i - 1])}, "
             f"{float(knots[i])!r} after times[0]: float64 does not tell them apart"
         )
-    wrong = ~((spacings >= max(SHORTEST, DIGITS * knots[-1])) & (spacings <= LONGEST))
+    wrong = (spacings < SHORTEST) | (spacings > LONGEST)
+    if not wrong.any():
+        wrong = spacings < DIGITS * knots[-1]
     i = int(np.argmax(wrong))
-    h, bound = float(spacings[i]), f"longer than {LONGEST:.2g}"
+    h, bound = float(spacings[i]), f"below {DIGITS:.1g} of the whole duration, {knots[-1]:.3g}"
     if h < SHORTEST:
         bound = f"shorter than {SHORTEST:.2g}"
-    elif h <= LONGEST:
-        bound = f"below {DIGITS:.1g} of the whole duration, {knots[-1]:.3g}"
+    elif h > LONGEST:
+        bound = f"longer than {LONGEST:.2g}"
     raise ValueError(
         f"times[{i}] to times[{i + 1}] is {h!r}, {bound}: float64 cannot carry its rates"
     )
