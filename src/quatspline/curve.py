@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from quatspline import keyframes as kf
 from quatspline import numeric, options, quaternion, solving, stamps
-from quatspline.inputs import FloatArray, at, check_out, checked_threads, real_array
+from quatspline.inputs import FloatArray, at, check_out, checked_threads, float_array, real_array
 from quatspline.solving import SolveReport
 
 if TYPE_CHECKING:
@@ -315,7 +315,8 @@ class Curve(abc.ABC):
             )
         self._options = options.checked(self.name, type(self)._fit, given)
         self._keyframes = keyframes
-        self._origin = float(keyframes.times[0]) if keyframes.plain else 0.0
+        self._plain = keyframes.plain
+        self._origin = float(keyframes.times[0]) if self._plain else 0.0
         self._widths = tuple((*keyframes.track_shape, width) for width in (4, 3, 3))
         if self.batched or keyframes.tracks.shape[0] == 1:
             # No part is the curve itself: a cycle would keep its memory until garbage collection.
@@ -389,21 +390,19 @@ class Curve(abc.ABC):
         They count from `_origin`: as given, or, of keyframes with other stamps than float64, since the
         first keyframe.
         """
-        if type(t) is float and self._keyframes.plain:
+        if type(t) is float and self._plain:
             return np.array(t), self._slack
         given = self._given(t)
-        if self._keyframes.plain:
-            with np.errstate(over="ignore"):  # a longdouble that float64 does not hold is infinite
-                samples = given.astype(np.float64, copy=False)
+        if self._plain:
+            samples = float_array("t", given)
         else:
-            samples = stamps.elapsed(given, self._keyframes.times[0])
-        exact = self._keyframes.plain and (given.dtype.kind != "f" or given.dtype.itemsize >= 8)
-        slack = self._slack if exact else self._slack_of(given.dtype)
-        return (samples if samples.flags.carray else samples.copy()), slack
+            samples = float_array("t", stamps.elapsed(given, self._keyframes.times[0]))
+        exact = self._plain and (given.dtype.kind != "f" or given.dtype.itemsize >= 8)
+        return samples, self._slack if exact else self._slack_of(given.dtype)
 
     def _given(self, t: Any) -> NDArray[Any]:
         """Samples as an array of what they are."""
-        return real_array("t", t) if self._keyframes.plain else stamps.stamps("t", t)
+        return real_array("t", t) if self._plain else stamps.stamps("t", t)
 
     @cached_property
     def _slack(self) -> float:

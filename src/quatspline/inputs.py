@@ -22,6 +22,8 @@ def real_array(name: str, given: Any, kinds: str = NUMBERS) -> NDArray[Any]:
     ValueError
         Rows of unequal length, masked entries, complex numbers, and what is no number.
     """
+    if type(given) is np.ndarray and given.dtype.kind in kinds:
+        return given
     refuse_masked(name, given)
     try:
         array = np.asarray(given)
@@ -35,8 +37,10 @@ def real_array(name: str, given: Any, kinds: str = NUMBERS) -> NDArray[Any]:
 
 def float_array(name: str, given: Any) -> FloatArray:
     """The same as C-contiguous, aligned, writeable float64: one compiled signature serves all."""
-    with np.errstate(over="ignore"):  # a longdouble that float64 does not hold is infinite
-        array = real_array(name, given).astype(np.float64, order="C", copy=False)
+    array = real_array(name, given)
+    if array.dtype != np.float64 or not array.flags.c_contiguous:
+        with np.errstate(over="ignore"):  # a longdouble that float64 does not hold is infinite
+            array = array.astype(np.float64, order="C")
     return array if array.flags.carray else array.copy()
 
 

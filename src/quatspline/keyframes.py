@@ -28,8 +28,11 @@ TICKS = 1e-4
 SHORTEST, LONGEST = 2.0**-200, 2.0**200
 """Spacings within these bounds: kernels form powers of them, and accelerations their inverse square."""
 
-DIGITS = 2.0**-52
-"""A spacing below this share of the whole duration has no digit left in the times after it."""
+DIGITS = 1e-14
+"""A spacing below this share of the whole duration has hardly a digit left in the times after it."""
+
+
+FLOAT: np.dtype[Any] = np.dtype(np.float64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +44,7 @@ class Keyframes:
     times : (n,) or, closed, (n + 1,), as given (`stamps.stamps`); the last of a closed set is the return
     knots : float64 times since the first, (n,) or (n + 1,): all work is done in these
     spacings : float64 knot spacings h, one a segment: (n - 1,) or, closed, (n,)
-    rounding : how far a spacing may be off for the digits or the ticks that the times were given in
+    digits : dtype of the times as they were given
     tracks : (K, n, 4) float64, unit quaternions, neighbours on one hemisphere unless kept as given
     track_shape : the shape whose product is K; () for a single track
     closed : whether the last keyframe leads back to the first
@@ -55,7 +58,7 @@ class Keyframes:
     track_shape: tuple[int, ...]
     closed: bool
     signs: FloatArray
-    rounding: float = 0.0
+    digits: np.dtype[Any] = FLOAT
 
     @property
     def quaternions(self) -> FloatArray:
@@ -91,7 +94,9 @@ class Keyframes:
     @property
     def uneven(self) -> int | None:
         """The first spacing that differs from spacing 0 by more than the times' rounding."""
-        h, rounding = self.spacings, self.rounding
+        h, t = self.spacings, self.times
+        rounding = 8 * stamps.resolution(t[0], t[-1], self.digits)
+        rounding += min(2 * stamps.tick(t), TICKS * float(h.mean()))
         differs = np.flatnonzero(np.abs(h - h[0]) > UNIFORM * h[0] + rounding)
         return int(differs[0]) if differs.size else None
 
@@ -144,7 +149,7 @@ def prepare(
     if switch("normalise", normalise):
         q = directions(q)
     n = q.shape[0]
-    t, knots, spacings, rounding = _times(
+    t, knots, spacings, digits = _times(
         np.arange(n + closed) if times is None else times, n, closed
     )
     known = isinstance(closing_sign, int | np.integer) and closing_sign in (1, -1)
@@ -157,7 +162,7 @@ def prepare(
     tracks, signs = np.empty((rows.shape[1], n, 4)), np.empty(rows.shape[1])
     if not _take(rows, align, closed, float(closing_sign or 1), tracks, signs):
         explain_norms(q, NORM_TOLERANCE)
-    keyframes = Keyframes(t, knots, spacings, tracks, track_shape, closed, signs, rounding)
+    keyframes = Keyframes(t, knots, spacings, tracks, track_shape, closed, signs, digits)
     if not align:
         _refuse_antipodes(keyframes)
     for array in (t, knots, spacings, tracks, signs):
@@ -193,8 +198,10 @@ def _take(q, align, closed, closing_sign, tracks, signs):
     return True
 
 
-def _times(given: Any, n: int, closed: bool) -> tuple[NDArray[Any], FloatArray, FloatArray, float]:
-    """Times as given, float64 times since the first, spacings, and the rounding of these."""
+def _times(
+    given: Any, n: int, closed: bool
+) -> tuple[NDArray[Any], FloatArray, FloatArray, np.dtype[Any]]:
+    """Times as given, float64 times since the first, spacings, and the dtype they were given in."""
     t = stamps.stamps("times", given)
     if t.shape != (n + closed,):
         if t.dtype.kind == "f":
@@ -209,9 +216,7 @@ def _times(given: Any, n: int, closed: bool) -> tuple[NDArray[Any], FloatArray, 
     since = t if plain else float_array("times", stamps.elapsed(t, t[0]))
     if not _space(since, t[0] if plain else 0.0, knots, spacings):
         _explain_times(t, knots, spacings)
-    rounding = 8 * stamps.resolution(t[0], t[-1], kind)
-    rounding += min(2 * stamps.tick(t), TICKS * float(knots[-1]) / max(spacings.size, 1))
-    return t.copy(), knots, spacings, rounding
+    return t.copy(), knots, spacings, kind
 
 
 @compiled

@@ -79,6 +79,8 @@ def explain_norms(q: FloatArray, tolerance: float) -> None:
 
 def _numbers(given: Any) -> Any:
     """Rotations, quaternions of other packages and named columns as plain numbers."""
+    if type(given) is np.ndarray and given.dtype == np.float64:
+        return given
     refuse_masked("quaternions", given)
     if hasattr(given, "as_quat"):
         return given.as_quat(scalar_first=True)

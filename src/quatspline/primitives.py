@@ -55,6 +55,9 @@ INVERSE_PI = 1.0 / math.pi
 PI_HIGH = math.pi
 PI_LOW = 1.2246467991473532e-16
 
+LOST = 6e15
+"""An angle in rad that float64 does not tell from one a quarter of a turn away."""
+
 ANTIPODAL_SINE = 1e-18
 """Antipodes have a smaller sine than this: less than one rounding of their components."""
 
@@ -92,21 +95,27 @@ def sinc_near(z):
 def sincos(x):
     """(sin x, cos x) to rounding for |x| up to 1e5, branch-free: x = k pi + r with |r| <= pi/2.
 
-    Beyond, as accurate as x; an x without a digit after the point (1e15) still gets one angle.
+    Beyond, as accurate as x, and on the unit circle up to LOST; `sincos_any` serves where x may exceed it.
     """
     k = (x * INVERSE_PI + ROUND) - ROUND
-    s, c = sincos_near(min(max((x - k * PI_HIGH) - k * PI_LOW, -NEAR), NEAR))
+    s, c = sincos_near((x - k * PI_HIGH) - k * PI_LOW)
     half = 0.5 * k
-    odd = min(abs(half - ((half + ROUND) - ROUND)), 0.5)  # 0 for even k, 1/2 for odd k
+    odd = half - ((half + ROUND) - ROUND)  # 0 for even k, +-1/2 for odd k
     sign = 1.0 - 8.0 * odd * odd
     return sign * s, sign * c
+
+
+@inlined
+def sincos_any(x):
+    """(sin x, cos x) of any x; beyond LOST of one angle."""
+    return sincos(min(max(x, -LOST), LOST))
 
 
 @inlined
 def sinc(z):
     """(sin(r)/r, cos r) of z = r^2 for any r."""
     r = math.sqrt(z) + TINY
-    s, c = sincos(r)
+    s, c = sincos_any(r)
     return s / r, c
 
 

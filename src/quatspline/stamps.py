@@ -46,6 +46,8 @@ def stamps(name: str, given: Any) -> NDArray[Any]:
     ValueError
         What is no time, a datetime that is none (NaT), integers beyond int64.
     """
+    if type(given) is np.ndarray and given.dtype == np.float64:
+        return given
     array = real_array(name, _of_objects(name, given), KINDS)
     if array.dtype.kind in "mM":
         return _counted(name, array)

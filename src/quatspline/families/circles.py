@@ -18,7 +18,7 @@ from numba import carray
 from quatspline._jit import BLOCK, CONSTANTS, RESULT, ROWS, compiled, inlined, sample_kernel
 from quatspline.families.nested import restored, set_rate, slerp_jet
 from quatspline.families.segments import Family
-from quatspline.primitives import sincos, slerp
+from quatspline.primitives import sincos_any, slerp
 
 # notation: the constants of a circle are P, X, Y (12) and the angle's phi_0, r, g.
 SIZE = 15
@@ -74,7 +74,7 @@ def _on(s, c, j, sine, rise):
 @inlined
 def _point(s, c, j, u):
     angle = s[c + 14, j] * (u - u * u) + (s[c + 13, j] * u + s[c + 12, j])
-    sine, cosine = sincos(angle)
+    sine, cosine = sincos_any(angle)
     return _on(s, c, j, sine, 1.0 - cosine)
 
 

@@ -31,6 +31,7 @@ from quatspline.primitives import (
     mul,
     polar,
     sincos,
+    sincos_any,
     sincos_near,
     sincos_small,
     unrotate,
@@ -87,10 +88,10 @@ def set_turn(segments, i, k, length, nx, ny, nz, c0, c1, c2, c3, c4, c5):
         segments[i, Q0N1 + 3] = c
 
 
-# Kernels: `near` for half angles up to NEAR, `small` for outer factors up to SMALL.
+# Kernels: `near` for half angles up to NEAR, `small` for outer factors up to SMALL, `anywhere` for any.
 
 
-def _orientation(near: bool, small: bool = False) -> Kernel:
+def _orientation(near: bool, small: bool = False, anywhere: bool = False) -> Kernel:
     def kernel(sheet, n):
         s = carray(sheet, (ROWS, BLOCK))
         for j in range(n):
@@ -104,6 +105,10 @@ def _orientation(near: bool, small: bool = False) -> Kernel:
                 s1, c1 = sincos_near(a)
                 s2, c2 = sincos_near(b)
                 s3, c3 = sincos_near(c)
+            elif anywhere:
+                s1, c1 = sincos_any(a)
+                s2, c2 = sincos_any(b)
+                s3, c3 = sincos_any(c)
             else:
                 s1, c1 = sincos(a)
                 s2, c2 = sincos(b)
@@ -141,8 +146,8 @@ def _velocity(near: bool, small: bool = False) -> Kernel:
                 s2, c2 = sincos_near(b)
                 s3, c3 = sincos_near(c)
             else:
-                s2, c2 = sincos(b)
-                s3, c3 = sincos(c)
+                s2, c2 = sincos_any(b)
+                s3, c3 = sincos_any(c)
             # omega <- R_k^T omega + 2 theta_k' n_k, factor by factor
             x, y, z = unrotate(
                 s2,
@@ -194,8 +199,8 @@ def _acceleration(near: bool, small: bool = False) -> Kernel:
                 s2, c2 = sincos_near(b)
                 s3, c3 = sincos_near(c)
             else:
-                s2, c2 = sincos(b)
-                s3, c3 = sincos(c)
+                s2, c2 = sincos_any(b)
+                s3, c3 = sincos_any(c)
             px, py, pz = s[_N + 3, j], s[_N + 4, j], s[_N + 5, j]
             mx, my, mz = unrotate(s2, c2, px, py, pz, s[_N, j], s[_N + 1, j], s[_N + 2, j])
             # behind two factors: omega = r1 m + r2 p, alpha = e1 m + 2 r1 r2 m x p + e2 p
@@ -224,16 +229,21 @@ def _acceleration(near: bool, small: bool = False) -> Kernel:
     return sample_kernel(kernel)
 
 
-_FAR = (_orientation(False), _velocity(False), _acceleration(False))
+_RATES = (_velocity(False), _acceleration(False))
 
-CUMULATIVE = Family(SIZE, near=(_orientation(True), _velocity(True), _acceleration(True)), far=_FAR)
+CUMULATIVE = Family(
+    SIZE,
+    near=(_orientation(True), _velocity(True), _acceleration(True)),
+    far=(_orientation(False), *_RATES),
+)
 """Evaluates (1) and its rates."""
 
 MIDDLE = Family(
     SIZE,
     near=(_orientation(True, True), _velocity(True, True), _acceleration(True, True)),
-    far=_FAR,
+    far=(_orientation(False, anywhere=True), *_RATES),
 )
-"""The same where the outer factors are small: a fit kernel counts their angles SIDE times."""
+"""The same where the outer factors are small: a fit kernel counts their angles SIDE times.  Far from that,
+beside spacings of extreme ratio, angles may be of any size."""
 
 SIDE = NEAR / SMALL

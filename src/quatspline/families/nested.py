@@ -45,6 +45,9 @@ PARAMETERS = 3 * ARC_SIZE
 TRIANGLE_SIZE = PARAMETERS + 12
 SQUAD_SIZE = 2 * ARC_SIZE
 
+ROUGH = 5e-7
+"""Squares of lengths off 1 by more than this are restored by a root: to 1e-13 without one."""
+
 FAR = 2.25
 """z = theta^2 up to which the polynomial of sin(theta)/theta serves (to 2e-14 for its second
 derivative); beyond it closed forms."""
@@ -74,14 +77,31 @@ def _arc(s, k, j, x):
 def restored(p, other):
     """p / |p|: slerp between near-antipodes has digits to lose; the other where it has lost all."""
     size = p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]
-    lost = not size > TINY
-    k = 1.0 / math.sqrt(1.0 if lost else size)
-    return (
-        other[0] if lost else k * p[0],
-        other[1] if lost else k * p[1],
-        other[2] if lost else k * p[2],
-        other[3] if lost else k * p[3],
-    )
+    if not size > TINY:
+        return other
+    k = 1.0 / math.sqrt(size)
+    return k * p[0], k * p[1], k * p[2], k * p[3]
+
+
+@inlined
+def _set_unit(s, j, p):
+    """p, nearly of unit length, into the result rows; 1 where it is off by more than ROUGH.
+
+    Off by e, 1.5 - |p|^2 / 2 restores the length to 3/2 e^2, without a root and a division.
+    """
+    size = p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]
+    off = abs(size - 1.0) <= ROUGH
+    k = 1.5 - 0.5 * size if off else 1.0
+    _set(s, j, (k * p[0], k * p[1], k * p[2], k * p[3]))
+    return 0 if off else 1
+
+
+@inlined
+def _restore(s, n, arc):
+    """Result rows to unit length; where a slerp has lost all, to the point of an arc."""
+    for j in range(n):
+        p = (s[RESULT, j], s[RESULT + 1, j], s[RESULT + 2, j], s[RESULT + 3, j])
+        _set(s, j, restored(p, _arc(s, arc, j, s[0, j])))
 
 
 @inlined
@@ -96,6 +116,7 @@ def _set(s, j, q):
 def TRIANGLE_ORIENTATION(sheet, n):
     """The triangle of slerps at u."""
     s = carray(sheet, (ROWS, BLOCK))
+    rough = 0
     for j in range(n):
         u = s[0, j]
         a0, a1, a2, a3 = _arc(s, 0, j, _parameter(s, 0, j, u))
@@ -104,19 +125,24 @@ def TRIANGLE_ORIENTATION(sheet, n):
         a0, a1, a2, a3 = slerp(a0, a1, a2, a3, b0, b1, b2, b3, _parameter(s, 3, j, u))
         b0, b1, b2, b3 = slerp(b0, b1, b2, b3, c0, c1, c2, c3, _parameter(s, 4, j, u))
         a0, a1, a2, a3 = slerp(a0, a1, a2, a3, b0, b1, b2, b3, _parameter(s, 5, j, u))
-        _set(s, j, restored((a0, a1, a2, a3), _arc(s, 1, j, u)))
+        rough += _set_unit(s, j, (a0, a1, a2, a3))
+    if rough > 0:
+        _restore(s, n, 1)
 
 
 @sample_kernel
 def SQUAD_ORIENTATION(sheet, n):
     """The squad at u."""
     s = carray(sheet, (ROWS, BLOCK))
+    rough = 0
     for j in range(n):
         u = s[0, j]
         a0, a1, a2, a3 = _arc(s, 0, j, u)
         b0, b1, b2, b3 = _arc(s, 1, j, u)
         p = slerp(a0, a1, a2, a3, b0, b1, b2, b3, 2.0 * u * (1.0 - u))
-        _set(s, j, restored(p, (a0, a1, a2, a3)))
+        rough += _set_unit(s, j, p)
+    if rough > 0:
+        _restore(s, n, 0)
 
 
 @inlined
