@@ -21,6 +21,8 @@ REFUSALS = (
     r"must strictly increase",
     r"log-cubic closes only curves",
     r"too uneven for degree",
+    r"rad on a segment of",
+    r"float64 does not tell so many within",
 )
 """What may be refused of keyframes that were drawn at random: sentences that say why."""
 
