@@ -255,6 +255,7 @@ OTHER_ORDERS = [
     "qx..qw",
     "i,j,k,real",
     "t, pose, orientation (x y z w)",
+    "x — y — z — w",
 ]
 
 
@@ -276,6 +277,7 @@ def test_an_order_that_contradicts_the_columns_is_refused(
         ("scalar last", "k.csv"),
         ("the real part comes last", "k.csv"),
         ("quaternions, w-last", "k.csv"),
+        ("the vector part is first", "k.csv"),
         ("scalar first", "k.txt"),
         ("qw is first", "k.txt"),
     ],
@@ -284,8 +286,22 @@ def test_a_place_of_the_scalar_that_contradicts_the_format_is_refused(
     tmp_path: Path, comment: str, name: str
 ) -> None:
     rows = table("tWXYZ" if name == "k.csv" else "txyzXYZW")
-    what = f": the comment says that the scalar is {comment.split()[-1].removeprefix('w-')}, but"
+    place = "last" if name == "k.csv" else "first"
+    what = f": the comment says that the scalar is {place}, but"
     assert what in refusal(tmp_path, f"# {comment}\n{rows}", name)
+
+
+@pytest.mark.parametrize("item", ["{}", "column {n}: {}", "{n}. {}", "{}: quaternion {}", "{} [-]"])
+def test_columns_listed_one_below_another_are_held_against_the_rows(
+    tmp_path: Path, item: str
+) -> None:
+    def listed(*names: str) -> str:
+        return "".join(f"# {item.format(name, name, n=i)}\n" for i, name in enumerate(names, 1))
+
+    check(put(tmp_path, listed("t", "qw", "qx", "qy", "qz") + table("tWXYZ")), False)
+    message = refusal(tmp_path, listed("t", "qx", "qy", "qz", "qw") + table("tWXYZ"))
+    assert message.startswith(", line 5: the comment has the quaternion in the order x, y, z, w")
+    check(put(tmp_path, "# x is up\n# y is left\n#\n# z\n# w\n" + table("tWXYZ")), False)
 
 
 def test_names_overrule_a_place_of_the_scalar(tmp_path: Path) -> None:

@@ -33,16 +33,22 @@ LEAST_NAMES = 4
 LETTER = re.compile(r"[^\W\d_eE]")
 """A letter that numbers do not have: rows that are commented out say nothing."""
 
-CONJUNCTIONS = frozenset({"and", "then", "&"})
+BETWEEN_NAMES = frozenset({"and", "then", "&", "-", "–", "—", "→"})
 """Words that do not interrupt an enumeration."""
 
 BRACKETS = re.compile(r"[\[({](?P<inner>[^\[({\])}]*)[\])}]")
 BETWEEN = re.compile(r"[\s,;|:=<>]+|\.\.+|…")
 """What stands between words that may be names."""
 
-SCALAR_PLACE = re.compile(
-    r"\b(?:scalar|real|q?w)(?:[\s-]+(?:part|component|is|comes|stands))*[\s-]+(first|last)\b", re.I
+PLACE = re.compile(
+    r"\b(?:scalar|real|q?w|(vector|imaginary))"
+    r"(?:[\s-]+(?:part|component|is|comes|stands)s?)*[\s-]+(first|last)\b",
+    re.I,
 )
+OTHER = {"first": "last", "last": "first"}
+
+ITEM = re.compile(r"[\W\d]*(?:(?:column|col|field)s?\b[\W\d]*)?([^\W\d][\w.]*(?:\[\w+\])?)", re.I)
+"""The first word of a line in a list of columns: ``1. qx``, ``column 2: qy [-]``."""
 
 
 def statements(comment: str) -> Iterator[str]:
@@ -78,8 +84,28 @@ def order_in(text: str) -> str:
 
 def scalar_place(text: str) -> str:
     """Where a statement says in words that the scalar is, ``first`` or ``last``, or nothing."""
-    found = SCALAR_PLACE.search(text)
-    return found[1].lower() if found else ""
+    found = PLACE.search(text)
+    if not found:
+        return ""
+    place = found[2].lower()
+    return OTHER[place] if found[1] else place
+
+
+def order_below(comments: Sequence[tuple[int, str]]) -> tuple[int, str]:
+    """The order of a quaternion whose components begin comments one below another, and where it ends.
+
+    The number of the last line and the order, or 0 and nothing; a line that repeats one begins anew.
+    """
+    order, before = "", 0
+    for number, comment in comments:
+        found = ITEM.match(comment)
+        part = next(filter(None, components([found[1]])), None) if found else None
+        follows = number == before + 1 and part is not None and part[1] not in order
+        order = (order if follows else "") + (part[1] if part else "")
+        before = number
+        if len(order) == len(COMPONENTS):
+            return number, order
+    return 0, ""
 
 
 # -- lists ----------------------------------------------------------------------------------------
@@ -97,7 +123,7 @@ class _List:
     def runs(self) -> list[list[str]]:
         """Names in a row, whatever stands between them, the longest first."""
         within = (_separate(field) for field in self.fields)
-        told = [word for word in itertools.chain(*within) if word.lower() not in CONJUNCTIONS]
+        told = [word for word in itertools.chain(*within) if word.lower() not in BETWEEN_NAMES]
         return sorted(_runs(told), key=len, reverse=True)
 
     @property

@@ -5,7 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from quatspline.trajectories.files.columns import Layout, is_readable, layout
-from quatspline.trajectories.files.comments import columns_in, order_in, scalar_place, statements
+from quatspline.trajectories.files.comments import (
+    columns_in,
+    order_below,
+    order_in,
+    scalar_place,
+    statements,
+)
 from quatspline.trajectories.files.lines import Lines, is_number
 from quatspline.trajectories.files.names import recognised
 
@@ -41,8 +47,12 @@ def commented(lines: Lines, width: int, known: Layout, header: bool) -> Layout |
         if found and named.picked != found.picked:
             raise lines.error("the comment and another header name the columns differently", number)
         found = named
+    read = (found or known).order
     for number, text in notes:
-        _check_order(lines, text, number, found, known)
+        _check_order(lines, number, order_in(text), read)
+        if not found:  # where the scalar is, in words, is a hint that names of columns overrule
+            _check_place(lines, number, scalar_place(text), read)
+    _check_order(lines, *order_below(lines.comments), read)
     return None if header else found
 
 
@@ -57,17 +67,15 @@ def _named(lines: Lines, names: Sequence[str], width: int, number: int) -> Layou
     return laid_out(lines, names, number)
 
 
-def _check_order(lines: Lines, text: str, number: int, found: Layout | None, known: Layout) -> None:
-    """Refuse what a comment says of the order of quaternions where they are read in another.
-
-    Where the scalar is, in words, is a hint that any names of columns overrule.
-    """
-    read = (found or known).order
-    told, place = order_in(text), scalar_place(text)
+def _check_order(lines: Lines, number: int, told: str, read: str) -> None:
+    """Refuse a comment that enumerates a quaternion in another order than it is read in."""
     if told and told != "".join(part for part in read if part in told):
         what = f"the comment has the quaternion in the order {', '.join(told)}"
-    elif place and not found and read.index("w") != {"first": 0, "last": 3}[place]:
+        raise lines.error(f"{what}, but the columns are read as {', '.join(read)}", number)
+
+
+def _check_place(lines: Lines, number: int, place: str, read: str) -> None:
+    """Refuse a comment that says that the scalar is where it is not read."""
+    if place and read.index("w") != {"first": 0, "last": len(read) - 1}[place]:
         what = f"the comment says that the scalar is {place}"
-    else:
-        return
-    raise lines.error(f"{what}, but the columns are read as {', '.join(read)}", number)
+        raise lines.error(f"{what}, but the columns are read as {', '.join(read)}", number)
