@@ -198,7 +198,7 @@ def test_list_imports_no_table_no_figure(desk: Desk) -> None:
         ),
         (
             ["compare", "one.csv", "--schemes", "stairs"],
-            ": one.csv: quaternions has 1 keyframes: at",
+            ": one.csv: quaternions has 1 keyframe: at",
         ),
         (
             ["sample", "pair.csv", "--scheme", "three", "--count", "2"],
@@ -208,6 +208,16 @@ def test_list_imports_no_table_no_figure(desk: Desk) -> None:
             ["sample", "long.csv", "--scheme", "stairs", "--count", "2"],
             ": long.csv: times span -1e+308 to 1e+308: too long for float64",
         ),
+        (
+            ["sample", "return.npz", "--scheme", "stairs", "--count", "2"],
+            ": return.npz: 3 times for 2 quaternions: an open motion has one time per keyframe; "
+            "--closed takes the last time as that of the return",
+        ),
+        (["compare", "return.npz"], ": return.npz: 3 times for 2 quaternions: an open motion has"),
+        (["compare", ""], "quatspline: '': a blank name is no file's"),
+        (["sample", " ", "--scheme", "stairs", "--count", "2"], ": ' ': a blank name is no file's"),
+        (["sample", "k.csv", "--scheme", "stairs", "--count", "2", "-o", ""], ": '': a blank name"),
+        (["compare", "."], "quatspline: .: unknown suffix ''"),
         (["sample", "k.csv", "--scheme", "stairs", "--count", "2", "-o", "x.png"], "suffix '.png'"),
         (["sample", "k.csv", "--scheme", "stairs", "--count", "2", "-o", "n/x.csv"], "be written"),
         (
@@ -235,6 +245,7 @@ def test_bad_usage_and_bad_input_are_told_in_one_line(
     desk.keyframes("bad.csv", "0,1,0,0,0\n1,1,0\n")
     desk.keyframes("one.csv", "0,1,0,0,0\n")
     desk.keyframes("pair.csv")
+    np.savez("return.npz", times=[0, 1, 2], quaternions=[[1, 0, 0, 0], [0.8, 0.6, 0, 0]])
     desk.keyframes("long.csv", "-1e308,1,0,0,0\n1e308,0.8,0.6,0,0\n")
     desk.keyframes("uneven.csv", "0,1,0,0,0\n1,0.8,0.6,0,0\n5,0.6,0.8,0,0\n")
     status = cli.main(arguments)  # in this process: there are many, and others are processes

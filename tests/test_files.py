@@ -163,6 +163,8 @@ def test_npz_of_a_closed_motion_has_one_time_more(tmp_path: Path, last: float) -
         motion = read(path)
         assert (motion.times.shape, motion.quaternions.shape) == ((4,), (3, 4))
         assert motion.returning() is motion
+        with pytest.raises(ValueError, match=r"^4 times for 3 quaternions: .*; --closed takes the"):
+            motion.opened()
     else:
         assert refusal(path).startswith(", row 3: t ")
 
@@ -368,6 +370,17 @@ def test_positions_follow_linearly() -> None:
     sampled = motion.sampled(np.array([1e9, 1e9 + 0.5, 1e9 + 2]), QUATERNIONS[:3])
     np.testing.assert_allclose(sampled.positions, [[0, 1, 2], [1, 1, 1.5], [4, 1, 0]], atol=1e-15)
     assert Motion(TIMES, QUATERNIONS).sampled(TIMES, QUATERNIONS).positions is None
+
+
+@pytest.mark.parametrize("spacing", [1.0, 1e-3])
+def test_positions_follow_linearly_however_far_apart(spacing: float) -> None:
+    far = np.array([[1e308, -1.7e308, 1e308], [-1e308, 1.7e308, 1e308], [1e308, 0.1, 0.3]])
+    motion = Motion(np.arange(3) * spacing, QUATERNIONS[:3], far)
+    x = motion.sampled(np.arange(9) * (spacing / 4), np.tile(QUATERNIONS[0], (9, 1))).positions
+    np.testing.assert_allclose(x[:5, 0], [1e308, 5e307, 0, -5e307, -1e308], atol=1e293)
+    np.testing.assert_allclose(x[:5, 1], [-1.7e308, -8.5e307, 0, 8.5e307, 1.7e308], atol=1e293)
+    np.testing.assert_array_equal(x[:5, 2], 1e308)
+    np.testing.assert_array_equal(x[::4], far)
 
 
 def test_positions_follow_integer_stamps_exactly() -> None:

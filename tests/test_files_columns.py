@@ -150,10 +150,194 @@ def test_a_header_may_be_separated_otherwise_than_rows(tmp_path: Path) -> None:
         "1,2,3,4,5",
         "quaternions: w x y z",
         "w, x, y, z",
+        "recorded by qw, on qx day, with qy and qz",
+        "all times are in seconds",
+        "time is measured in seconds",
+        "distance between x and w",
+        "quaternion norm 1, w >= 0",
+        "axes x y z, weight w",
+        "I, John, kept this real",
+        "last w was dropped",
+        "http://example.com/x/y/z",
+        "timestamp, orientation (w x y z)",
+        "unit quaternions (w, x, y, z), t in s",
+        "quat: w first, then x, y and z",
+        "stored as wxyz",
+        "scalar-first",
     ],
 )
-def test_prose_stays_a_comment(tmp_path: Path, comment: str) -> None:
-    check(put(tmp_path, f"# {comment}\n{table('tWXYZ')}"), False)
+@pytest.mark.parametrize("mark", ["# ", "%", "// ", "\ufeff\ufeff# ", '"#'])
+def test_prose_stays_a_comment(tmp_path: Path, comment: str, mark: str) -> None:
+    check(put(tmp_path, f"{mark}{comment}\n{table('tWXYZ')}"), False)
+
+
+@pytest.mark.parametrize(
+    "comment",
+    [
+        "time stamps and poses of the left camera",
+        "recorded by qw, on qx day, with qy and qz",
+        "timestamp, position, orientation (x y z w)",
+        "poses as x y z and quaternions x y z w",
+        "t xyz xyzw",
+        "scalar last",
+    ],
+)
+def test_prose_stays_a_comment_beside_scalar_last(tmp_path: Path, comment: str) -> None:
+    check(put(tmp_path, f"# {comment}\n{table('txyzXYZW', ' ')}", "k.txt"), True)
+
+
+@pytest.mark.parametrize(
+    "comment",
+    [
+        "# t,qx,qy,qz,qw # from recorder",
+        "# from recorder # t,qx,qy,qz,qw",
+        "# t,qx,qy,qz,qw // from recorder",
+        "# t,qx,qy,qz,qw (from recorder)",
+        "# t,qx,qy,qz,qw from recorder",
+        "# t,qx,qy,qz,qw, recorded by me",
+        "# format: timestamp, orientation (qx qy qz qw)",
+        "# timestamp, orientation (x y z w)",
+        "# timestamp; orientation [x, y, z, w]",
+        "# (t, qx, qy, qz, qw)",
+        "# ['t', 'qx', 'qy', 'qz', 'qw']",
+        "# Time  Qx  Qy  Qz  Qs",
+        "# t,qi,qj,qk,qr",
+        "# time,quat_i,quat_j,quat_k,quat_real",
+        "# t,i,j,k,scalar",
+        "# t, q[i], q[j], q[k], q[real]",
+        "# t, qxyz, qw",
+        "# t, quat xyzw",
+        "# t,qx,qy,qz,qw,",
+        "# t,qx,qy,qz,qw,,,",
+        "# |t|qx|qy|qz|qw|",
+        "# columns are t, qx, qy, qz and qw",
+        "% t,qx,qy,qz,qw",
+        "% made up\n%% t qx qy qz qw",
+        "// t,qx,qy,qz,qw",
+        '"# t","qx","qy","qz","qw"',
+        '"# t,qx,qy,qz,qw",,,,',
+        "\ufeff\ufeff# t,qx,qy,qz,qw",
+        "# order: x y z w\n# t,qx,qy,qz,qw",
+        "t,qi,qj,qk,qr",
+        "i;j;k;real;t",
+    ],
+)
+def test_names_are_honoured_however_a_comment_lists_them(tmp_path: Path, comment: str) -> None:
+    order = "XYZWt" if comment.startswith("i") else "tXYZW"
+    check(put(tmp_path, f"{comment}\n{table(order)}"), False)
+
+
+@pytest.mark.parametrize(
+    "comment",
+    [
+        "timestamp, position (x y z), orientation (w x y z)",
+        "(timestamp) (x y z) (qw qx qy qz)",
+        "time, p (x, y, z), q (w, x, y, z)",
+        "t, position xyz, quaternion wxyz",
+        "t x y z qw qi qj qk",
+        "t x y z w i j k",
+        "Time, X, Y, Z, Qr, Qi, Qj, Qk",
+        "TUM format: timestamp tx ty tz qw qx qy qz, in metres",
+    ],
+)
+def test_names_of_poses_are_honoured_however_listed(tmp_path: Path, comment: str) -> None:
+    check(put(tmp_path, f"# {comment}\n{table('txyzWXYZ', ' ')}", "k.txt"), True)
+
+
+OTHER_ORDERS = [
+    "order: qi qj qk qr",
+    "x y z w",
+    "quaternions: x, y, z, w",
+    "quaternion [x, y, z, w]",
+    "the quaternion is xyzw",
+    "stored as x/y/z/w",
+    "qx, qy, qz and then qw",
+    "qx..qw",
+    "i,j,k,real",
+    "t, pose, orientation (x y z w)",
+    "x — y — z — w",
+]
+
+
+@pytest.mark.parametrize("comment", OTHER_ORDERS)
+@pytest.mark.parametrize("header", ["", "t,qw,qx,qy,qz\n", "# t,qr,qi,qj,qk\n"])
+@pytest.mark.parametrize("behind", [False, True])
+def test_an_order_that_contradicts_the_columns_is_refused(
+    tmp_path: Path, comment: str, header: str, behind: bool
+) -> None:
+    lines = f"{header}# {comment}\n" if behind else f"# {comment}\n{header}"
+    message = refusal(tmp_path, lines + table("tWXYZ"))
+    assert message.startswith(f", line {1 + (behind and bool(header))}: the comment has the quater")
+    assert message.endswith(", w, but the columns are read as w, x, y, z")
+
+
+@pytest.mark.parametrize(
+    ("comment", "name"),
+    [
+        ("scalar last", "k.csv"),
+        ("the real part comes last", "k.csv"),
+        ("quaternions, w-last", "k.csv"),
+        ("the vector part is first", "k.csv"),
+        ("scalar first", "k.txt"),
+        ("qw is first", "k.txt"),
+    ],
+)
+def test_a_place_of_the_scalar_that_contradicts_the_format_is_refused(
+    tmp_path: Path, comment: str, name: str
+) -> None:
+    rows = table("tWXYZ" if name == "k.csv" else "txyzXYZW")
+    place = "last" if name == "k.csv" else "first"
+    what = f": the comment says that the scalar is {place}, but"
+    assert what in refusal(tmp_path, f"# {comment}\n{rows}", name)
+
+
+@pytest.mark.parametrize("item", ["{}", "column {n}: {}", "{n}. {}", "{}: quaternion {}", "{} [-]"])
+def test_columns_listed_one_below_another_are_held_against_the_rows(
+    tmp_path: Path, item: str
+) -> None:
+    def listed(*names: str) -> str:
+        return "".join(f"# {item.format(name, name, n=i)}\n" for i, name in enumerate(names, 1))
+
+    check(put(tmp_path, listed("t", "qw", "qx", "qy", "qz") + table("tWXYZ")), False)
+    message = refusal(tmp_path, listed("t", "qx", "qy", "qz", "qw") + table("tWXYZ"))
+    assert message.startswith(", line 5: the comment has the quaternion in the order x, y, z, w")
+    check(put(tmp_path, "# x is up\n# y is left\n#\n# z\n# w\n" + table("tWXYZ")), False)
+
+
+def test_names_overrule_a_place_of_the_scalar(tmp_path: Path) -> None:
+    check(put(tmp_path, f"# was scalar last\nt,qw,qx,qy,qz\n{table('tWXYZ')}"), False)
+    check(put(tmp_path, f"# t,qx,qy,qz,qw\n# was scalar first\n{table('tXYZW')}"), False)
+
+
+@pytest.mark.parametrize(
+    ("comment", "what"),
+    [
+        ("timestamp,q0,q1,q2,q3", "'q0', 'q1', 'q2', 'q3': numbers do not say which"),
+        ("timestamp q1 q2 q3 q4", "'q1', 'q2', 'q3', 'q4': numbers do not say which"),
+        ("t, quaternion (q0 q1 q2 q3)", "'q0', 'q1', 'q2', 'q3': numbers do not say which"),
+        ("t,a,b,c,d", "no quaternion, such as 'qw'"),
+        ("time;vx;vy;vz;s", "no quaternion, such as 'qw'"),
+    ],
+)
+def test_a_comment_as_wide_as_rows_that_names_no_columns_is_refused(
+    tmp_path: Path, comment: str, what: str
+) -> None:
+    assert refusal(tmp_path, f"# {comment}\n{table('tWXYZ')}").startswith(f", line 1: {what}")
+    check(put(tmp_path, f"# {comment}\nt,qw,qx,qy,qz\n{table('tWXYZ')}"), False)
+
+
+def test_columns_that_only_look_like_parts_of_a_quaternion_are_left(tmp_path: Path) -> None:
+    header = "i,t,tx,ty,tz,qw,qx,qy,qz,rot_r,rot_p,real,s\n"
+    text = "".join(f"5,{line},1,2,3,4\n" for line in table("txyzWXYZ").splitlines())
+    motion = put(tmp_path, header + text)
+    check(motion, True)
+    assert motion.unread == ("i", "rot_r", "rot_p", "real", "s")
+
+
+@pytest.mark.parametrize("label", ['"#1"', "%1", "//host/1"])
+def test_rows_that_begin_with_a_label_are_no_comments(tmp_path: Path, label: str) -> None:
+    rows = "".join(f"{label},{line}\n" for line in table("tWXYZ").splitlines())
+    check(put(tmp_path, f"label,t,qw,qx,qy,qz\n{rows}"), False)
 
 
 def test_comments_among_the_data_are_no_header(tmp_path: Path) -> None:
@@ -221,7 +405,6 @@ def test_a_header_that_contradicts_itself_is_refused(
         ("# t,qx,qy,qz,qw\n# t,qw,qx,qy,qz", 2, "the comment and another header name the columns"),
         ("# t,qx,qy,qz", 1, "the comment names 4 columns, but the rows have 5 fields"),
         ("# t,qx,qy,qz,qw,label", 1, "the comment names 6 columns, but the rows have 5 fields"),
-        ("# quaternions: x, y, z, w", 1, "the comment names 4 columns, but the rows have 5 fields"),
         ("# t,qx,qy,qz,px", 1, "no column of the quaternion's w in the header"),
         ("t,qw,qx,qy,qz,label", 2, "expected 6 fields, found 5 (separated by commas)"),
     ],

@@ -147,9 +147,7 @@ def _add_sample(commands: Any) -> None:
     grid.add_argument(
         "--count", type=_count, metavar="N", help="samples in all, both ends included"
     )
-    sample.add_argument(
-        "-o", type=Path, dest="file", metavar="FILE", help="by default CSV on stdout"
-    )
+    sample.add_argument("-o", dest="file", metavar="FILE", help="by default CSV on stdout")
     sample.set_defaults(call=_sample)
 
 
@@ -306,7 +304,7 @@ def _motion(arguments: argparse.Namespace) -> Motion:
 
     motion = files.read(arguments.keyframes)
     with _naming(arguments.keyframes):
-        motion = motion.returning() if arguments.closed else motion
+        motion = motion.returning() if arguments.closed else motion.opened()
         prepare(motion.times, motion.quaternions, closed=arguments.closed)
     if motion.note:
         _note(f"{arguments.keyframes}: {motion.note}")

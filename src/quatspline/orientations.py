@@ -42,7 +42,8 @@ def orientations(given: Any, least: int) -> FloatArray:
         refuse_infinite("quaternions", q)
         raise ValueError(f"quaternions has shape {q.shape}: {_expected(q)}")
     if q.shape[0] < least:
-        raise ValueError(f"quaternions has {q.shape[0]} keyframes: at least {least} are needed")
+        count = f"{q.shape[0]} keyframe{'' if q.shape[0] == 1 else 's'}"
+        raise ValueError(f"quaternions has {count}: at least {least} are needed")
     if q.size == 0:
         raise ValueError(f"quaternions has shape {q.shape}: no track in it")
     if _homogeneous(q):

@@ -1,8 +1,8 @@
 """Keyframe files: CSV, TUM and NPZ; every row checked on reading, written whole or not at all.
 
-`lines` splits text into fields, `headers` and `columns` know columns by their names, `text` gathers
-rows, `npz` unpacks arrays, `spelled` keeps times exact, `checks` refuses rows, `writing` is the way
-back, and `motion` is what they exchange.
+`lines` splits text into fields, `names`, `columns` and `headers` know columns by their names, `comments`
+finds names in comments, `text` gathers rows, `npz` unpacks arrays, `spelled` keeps times exact, `checks`
+refuses rows, `writing` is the way back, and `motion` is what they exchange.
 """
 
 from __future__ import annotations
@@ -47,7 +47,8 @@ def read(path: str | Path) -> Motion:
     ``t``, ``time``, ``timestamp [ns]``; ``qw``, ``w``, ``q_RS_w []``, ``orientation.w``; ``tx``, ``x``,
     ``position.x``.  Without a header, CSV holds ``t,qw,qx,qy,qz`` and TUM ``t tx ty tz qx qy qz qw``.
     Fields are separated by commas, semicolons, tabs or blanks; all but the first go with decimal
-    commas, too.  Other lines that begin with # are comments.  NPZ holds ``times``, ``quaternions`` and
+    commas, too.  Other lines that begin with #, % or // are comments; one that has quaternions in another
+    order than the columns is refused.  NPZ holds ``times``, ``quaternions`` and
     perhaps ``positions``.  Times that are whole and beyond 2**53 stay integers; units stay the file's.
 
     Raises
@@ -55,8 +56,8 @@ def read(path: str | Path) -> Motion:
     KeyframeFileError
         A `ValueError` of one sentence that names the file and the first line (NPZ: row) at fault.
     """
-    path = Path(path)
     reader, _ = _format(path)
+    path = Path(path)
     try:
         return reader(path)
     except OSError as error:
@@ -71,8 +72,8 @@ def write(path: str | Path, motion: Motion) -> None:
     Positions are carried by every format; TUM has zeros where there are none.  Raises
     KeyframeFileError for an unknown suffix and for a file that cannot be written.
     """
-    path = Path(path)
     _, writer = _format(path)
+    path = Path(path)
     try:
         with replacing(path) as aside:
             writer(aside, motion)
@@ -82,11 +83,14 @@ def write(path: str | Path, motion: Motion) -> None:
 
 def check_suffix(path: str | Path) -> None:
     """Refuse a name whose suffix no format has, before any work is done."""
-    _format(Path(path))
+    _format(path)
 
 
-def _format(path: Path) -> tuple[Reader, Writer]:
-    suffix = path.suffix.lower()
+def _format(path: str | Path) -> tuple[Reader, Writer]:
+    given = str(path)
+    if not given.strip():
+        raise KeyframeFileError(f"{given!r}: a blank name is no file's")
+    suffix = Path(path).suffix.lower()
     if suffix not in _FORMATS:
-        raise KeyframeFileError(f"{path}: unknown suffix {suffix!r}: {nearest(suffix, _FORMATS)}")
+        raise KeyframeFileError(f"{given}: unknown suffix {suffix!r}: {nearest(suffix, _FORMATS)}")
     return _FORMATS[suffix]

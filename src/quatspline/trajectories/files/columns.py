@@ -1,31 +1,27 @@
-"""Columns by their names, in the spellings that tools write; what contradicts itself is refused."""
+"""Layouts of columns that names describe; what contradicts itself is refused."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+
+from quatspline.trajectories.files.names import (
+    COMPONENTS,
+    EXACT,
+    PLAIN,
+    POSITIONS,
+    QUATERNIONS,
+    UNKNOWN,
+    VECTOR,
+    components,
+    is_numbered,
+    rank,
+    time_rank,
+)
 
 CSV_COLUMNS = ("t", "qw", "qx", "qy", "qz")
 POSITION_COLUMNS = ("tx", "ty", "tz")
 TUM_COLUMNS = ("t", *POSITION_COLUMNS, "qx", "qy", "qz", "qw")
-
-TIMES = frozenset({"t", "time", "times", "timestamp", "timestamps", "stamp", "stamps"})
-TIME_UNIT = re.compile(r"(n|nano|u|micro|m|milli)?(s|secs?|seconds?)|nanos|micros|millis")
-LENGTHS = frozenset({"m", "mm", "cm", "km", "meter", "meters", "metre", "metres"})
-PLAIN = frozenset({"q", "quat", "quaternion"})
-QUATERNIONS = PLAIN | {"orientation", "orient", "ori", "rotation", "rot", "attitude", "att"}
-POSITIONS = frozenset(
-    {"t", "p", "pos", "position", "positions", "trans", "translation", "loc", "location"}
-)
-PATHS = frozenset({"field", "header", "pose", "msg", "data", "transform"})
-"""Words of the paths by which ROS names the fields of a message."""
-
-VECTOR = "xyz"
-COMPONENTS = "wxyz"
-
-EXACT, FRAMED, ELSEWHERE, UNKNOWN = range(4)
-"""How surely a name means what it says: ``q``, ``q_RS``, ``gt_q``, ``head``; surer names win."""
 
 
 @dataclass(frozen=True)
@@ -64,12 +60,7 @@ class _Group:
     columns: dict[str, int]
 
     def rank(self, known: frozenset[str]) -> int:
-        words = tuple(word for word in self.words if word not in PATHS)
-        if not words or (words[0] in known and len(words) == 1):
-            return EXACT
-        if words[0] in known:
-            return FRAMED
-        return UNKNOWN if known.isdisjoint(words) else ELSEWHERE
+        return rank(self.words, known)
 
     def has(self, components: str) -> bool:
         return all(part in self.columns for part in components)
@@ -94,31 +85,20 @@ def layout(names: Sequence[str]) -> Layout:
     return Layout(time, q, x, unread)
 
 
-def recognised(name: str) -> bool:
-    """Whether a name is one of a column of times, of a quaternion or of a position."""
-    component = _component(name)
-    if component is None:
-        return _time_rank(name) < UNKNOWN
-    group = _Group(component[0], {})
-    return min(group.rank(QUATERNIONS), group.rank(POSITIONS)) < UNKNOWN
-
-
-def names_quaternion(names: Iterable[str]) -> bool:
-    """Whether all four components of some quaternion are among the names."""
-    found = {component for name in names if (component := _component(name))}
-    return any({(words, part) for part in COMPONENTS} <= found for words, _ in found)
-
-
-def quaternion_order(names: Iterable[str]) -> str:
-    """The components that names end in, from left to right, as xyzw; other names count for nothing."""
-    return "".join(component[1] for name in names if (component := _component(name)))
+def is_readable(names: Sequence[str]) -> bool:
+    """Whether names describe a layout."""
+    try:
+        layout(names)
+    except ValueError:
+        return False
+    return True
 
 
 # -- times ----------------------------------------------------------------------------------------
 
 
 def _time(names: Sequence[str]) -> int:
-    ranks = [_time_rank(name) for name in names]
+    ranks = [time_rank(name) for name in names]
     best = min(ranks, default=UNKNOWN)
     if best == UNKNOWN:
         raise ValueError(f"no column of times, such as 't', in the header: {_quoted(names)}")
@@ -126,17 +106,6 @@ def _time(names: Sequence[str]) -> int:
     if len(found) > 1:
         raise ValueError(f"{_quoted(names[i] for i in found)}: more than one column of times")
     return found[0]
-
-
-def _time_rank(name: str) -> int:
-    words = [word for word in _words(name) if word not in PATHS]
-    named = [word for word in words if word in TIMES]
-    units = [word for word in words if TIME_UNIT.fullmatch(word)]
-    if not words or len(named) + len(units) < len(words):
-        return UNKNOWN
-    if named:
-        return EXACT if PATHS.isdisjoint(_words(name)) else FRAMED
-    return UNKNOWN if units == ["s"] else FRAMED  # "secs" beside "nsecs" is half a time
 
 
 # -- components -----------------------------------------------------------------------------------
@@ -166,9 +135,7 @@ def _contends(group: _Group, best: int) -> bool:
 def _lacking(names: Sequence[str], groups: list[_Group]) -> str:
     part = [g for g in groups if "w" in g.columns or not PLAIN.isdisjoint(g.words)]
     if not part:
-        numbered = [
-            name for name in names if re.fullmatch(r"(q|quat|quaternion)_?\d", _spelled(name))
-        ]
+        numbered = [name for name in names if is_numbered(name)]
         if numbered:
             return f"{_quoted(numbered)}: numbers do not say which of them is w; name w, x, y and z"
         return f"no quaternion, such as 'qw', 'qx', 'qy', 'qz', in the header: {_quoted(names)}"
@@ -197,49 +164,15 @@ def _position(names: Sequence[str], groups: list[_Group]) -> _Group | None:
 
 def _groups(names: Sequence[str]) -> list[_Group]:
     groups: dict[tuple[str, ...], _Group] = {}
-    for i, name in enumerate(names):
-        if component := _component(name):
-            words, part = component
-            columns = groups.setdefault(words, _Group(words, {})).columns
+    for i, component in enumerate(components(names)):
+        if component:
+            before, part = component
+            columns = groups.setdefault(before, _Group(before, {})).columns
             if part in columns:
-                pair = _quoted([names[columns[part]], name])
+                pair = _quoted([names[columns[part]], names[i]])
                 raise ValueError(f"{pair}: two columns of one name in the header")
             columns[part] = i
     return list(groups.values())
-
-
-def _component(name: str) -> tuple[tuple[str, ...], str] | None:
-    """The words before the component and the component, as q, RS and x of ``q_RS_x []``."""
-    words = _words(name)
-    while len(words) > 1 and words[-1] in LENGTHS:
-        words = words[:-1]
-    if not words:
-        return None
-    *before, last = words
-    if last in COMPONENTS and len(last) == 1:
-        return tuple(before), last
-    stem, part = last[:-1], last[-1]
-    if part in COMPONENTS and stem in QUATERNIONS | POSITIONS:
-        return (*before, stem), part
-    return None
-
-
-# -- spelling -------------------------------------------------------------------------------------
-
-
-def without_units(text: str) -> str:
-    """Text without what stands in brackets, as the unit in ``p_RS_R_x [m]``."""
-    text = re.sub(r"[\[(]([wxyz\d])[\])]", r"_\1", text)  # q[x] is an index, not a unit
-    return re.sub(r"\[[^\]]*\]|\([^)]*\)", "", text)
-
-
-def _words(name: str) -> tuple[str, ...]:
-    text = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", without_units(name))  # orientationX, qW
-    return tuple(word for word in re.split(r"[\W_]+", text.lower()) if word)
-
-
-def _spelled(name: str) -> str:
-    return "_".join(_words(name))
 
 
 def _quoted(names: Iterable[str]) -> str:

@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-import itertools
-import re
 from collections.abc import Sequence
 
-from quatspline.trajectories.files.columns import (
-    COMPONENTS,
-    Layout,
-    layout,
-    names_quaternion,
-    quaternion_order,
-    recognised,
-    without_units,
+from quatspline.trajectories.files.columns import Layout, is_readable, layout
+from quatspline.trajectories.files.comments import (
+    columns_in,
+    order_below,
+    order_in,
+    scalar_place,
+    statements,
 )
-from quatspline.trajectories.files.lines import Lines, is_number, parts, separator
-
-LEAST_NAMES = 4
-"""Names in a row without which a comment is prose: no fewer could be contradicted by columns."""
+from quatspline.trajectories.files.lines import Lines, is_number
+from quatspline.trajectories.files.names import recognised
 
 
 def is_header(fields: Sequence[str]) -> bool:
@@ -42,35 +37,45 @@ def commented(lines: Lines, width: int, known: Layout, header: bool) -> Layout |
     ``known`` is that of the header or, without one, of the format; all that is named must agree.
     """
     found = known if header else None
-    for number, comment in lines.comments:
-        names = _names_in(comment, width)
-        if names is None or _agrees(names, width, known):
+    notes = []
+    for number, text in _statements(lines):
+        names = columns_in(text, width)
+        if names is None or (header and len(names) == width and not is_readable(names)):
+            notes.append((number, text))
             continue
-        if len(names) != width:
-            what = f"the comment names {len(names)} columns, but the rows have {width} fields"
-            raise lines.error(what, number)
-        named = laid_out(lines, names, number)
+        named = _named(lines, names, width, number)
         if found and named.picked != found.picked:
             raise lines.error("the comment and another header name the columns differently", number)
         found = named
+    read = (found or known).order
+    for number, text in notes:
+        _check_order(lines, number, order_in(text), read)
+        if not found:  # where the scalar is, in words, is a hint that names of columns overrule
+            _check_place(lines, number, scalar_place(text), read)
+    _check_order(lines, *order_below(lines.comments), read)
     return None if header else found
 
 
-def _agrees(names: Sequence[str], width: int, with_: Layout) -> bool:
-    """Whether a comment only says in which order quaternions are, and that is so."""
-    return len(names) == len(COMPONENTS) < width and quaternion_order(names) == with_.order
+def _statements(lines: Lines) -> list[tuple[int, str]]:
+    return [(number, text) for number, line in lines.comments for text in statements(line)]
 
 
-def _names_in(comment: str, width: int) -> list[str] | None:
-    """The names of columns in a comment, or None where it is prose."""
-    text = re.sub(r"^[^:,;\t]*:\s+", "", comment.strip().lstrip("#").strip())  # "columns: t, qw"
-    mark = separator(text)
-    text = without_units(text) if mark == " " else text
-    fields = [part.strip().strip("\"'") for part in parts(text, mark)]
-    if names_quaternion(fields) and (len(fields) == width or mark != " "):
-        return fields
-    runs = [list(run) for known, run in itertools.groupby(fields, recognised) if known]
-    run = max(runs, key=len, default=[])
-    if len(run) < LEAST_NAMES:
-        return None
-    return run if len(run) in (width, len(fields)) or names_quaternion(run) else None
+def _named(lines: Lines, names: Sequence[str], width: int, number: int) -> Layout:
+    if len(names) != width:
+        what = f"the comment names {len(names)} columns, but the rows have {width} fields"
+        raise lines.error(what, number)
+    return laid_out(lines, names, number)
+
+
+def _check_order(lines: Lines, number: int, told: str, read: str) -> None:
+    """Refuse a comment that enumerates a quaternion in another order than it is read in."""
+    if told and told != "".join(part for part in read if part in told):
+        what = f"the comment has the quaternion in the order {', '.join(told)}"
+        raise lines.error(f"{what}, but the columns are read as {', '.join(read)}", number)
+
+
+def _check_place(lines: Lines, number: int, place: str, read: str) -> None:
+    """Refuse a comment that says that the scalar is where it is not read."""
+    if place and read.index("w") != {"first": 0, "last": len(read) - 1}[place]:
+        what = f"the comment says that the scalar is {place}"
+        raise lines.error(f"{what}, but the columns are read as {', '.join(read)}", number)

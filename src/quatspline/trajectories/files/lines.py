@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TextIO
 
-from quatspline.trajectories.files.columns import recognised
 from quatspline.trajectories.files.motion import KeyframeFileError
+from quatspline.trajectories.files.names import recognised
 
 SEPARATORS = {";": "semicolons", "|": "bars", ",": "commas", "\t": "tabs", " ": "blanks"}
 """What may separate fields; of two that suit a line alike, the first."""
@@ -22,24 +22,32 @@ MISSING = frozenset({"", "nan", "na", "n/a", "null", "none", "-"})
 DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
 
 
+COMMENT = r"#|%|//"
+"""What begins a comment, as a pattern; behind the first line that is none, # alone does."""
+
+_FIRST_COMMENTS = re.compile(rf"[\s\ufeff\"']*(?:{COMMENT})")
+_LATER_COMMENTS = re.compile(r"\s*#")  # a row may begin with a label such as "#1" or //host/file
+
+
 @dataclass
 class Lines:
-    """Lines of a file that are neither blank nor comments; comments before the first are kept."""
+    """Lines of a file that are neither blank nor comments; comments are kept while ``heading``."""
 
     path: Path
     stream: TextIO
     number: int = 0
+    heading: bool = True
     comments: list[tuple[int, str]] = field(default_factory=list)
 
     def __iter__(self) -> Iterator[str]:
-        heading = True
+        comment = _FIRST_COMMENTS
         for line in self.stream:
             self.number += 1
-            if line.lstrip().startswith("#"):
-                if heading:
+            if comment.match(line):
+                if self.heading:
                     self.comments.append((self.number, line))
             elif line.strip():
-                heading = False
+                comment = _LATER_COMMENTS
                 yield line
 
     def error(self, what: object, number: int | None = None) -> KeyframeFileError:

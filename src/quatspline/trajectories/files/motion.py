@@ -51,8 +51,17 @@ class Motion:
         if self.positions is None:
             return Motion(times, quaternions)
         t, knots = (stamps.elapsed(given, self.times[0]) for given in (times, self.times))
-        columns = [np.interp(t, knots, column) for column in self.positions.T]
-        return Motion(times, quaternions, np.stack(columns, axis=1))
+        return Motion(times, quaternions, _between(t, knots, self.positions))
+
+    def opened(self) -> Motion:
+        """This motion as an open one; raises ValueError where it has a time for its return."""
+        t, q = self.times, self.quaternions
+        if len(t) > len(q):
+            raise ValueError(
+                f"{len(t)} times for {len(q)} quaternions: an open motion has one time per "
+                "keyframe; --closed takes the last time as that of the return"
+            )
+        return self
 
     def returning(self) -> Motion:
         """This motion closed: n keyframes and n + 1 times.
@@ -83,6 +92,17 @@ class Motion:
         end = _one_step_after(t)
         x = None if x is None else np.concatenate([x, x[:1]])
         return replace(self, times=np.append(t, np.asarray(end, t.dtype)), positions=x, note=note)
+
+
+def _between(t: FloatArray, knots: FloatArray, x: FloatArray) -> FloatArray:
+    """Positions x (n, 3) at knots (n,), linearly at t (m,), which lies between the first and the last.
+
+    Differences are halved, since those of finite positions, and slopes even more so, may overflow.
+    """
+    i = np.clip(np.searchsorted(knots, t, side="right") - 1, 0, len(knots) - 2)
+    u = ((t - knots[i]) / (knots[i + 1] - knots[i]))[:, np.newaxis]
+    step = u * (x[i + 1] / 2 - x[i] / 2)
+    return np.where(u < 1.0, x[i] + step + step, x[i + 1])
 
 
 def _median_step(q: FloatArray) -> float:

@@ -47,6 +47,7 @@ def _read(lines: Lines, columns: tuple[str, ...]) -> Motion:
     if header:
         found, width = laid_out(lines, fields, lines.number), len(fields)
         fields, mark = _first(lines, content)
+    lines.heading = False
     named = commented(lines, width if header else len(fields), found, header)
     if named:
         found, width = named, len(fields)
