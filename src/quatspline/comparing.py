@@ -25,6 +25,7 @@ from quatspline.keyframes import Keyframes
 from quatspline.options import declared
 from quatspline.quaternion import FloatArray
 from quatspline.registry import scheme, schemes
+from quatspline.stdout import say
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -270,6 +271,7 @@ def command(
     table, curves = _compared(keyframes, schemes)
     table = results.table("compare", table, title=TITLE, note=NOTE, formats=FORMATS, keys=[])
     found = advice.recommendation(table)
+    say(advice.lines(found))  # before a disk runs full
     results.text("recommendation.md", advice.markdown(found))
     names = advice.shown(table)
     with style.house():
@@ -282,7 +284,5 @@ def command(
     results.finish()
     scene = own_scene("own", "Your keyframes", keyframes, motion.positions, names)
     page = write_page(results, title=TITLE, scenes=[scene], sections=OWN, findings=found)
-    for line in advice.lines(found):
-        print(line)
     print(page, file=sys.stderr)
     return 0
