@@ -15,6 +15,7 @@ from quatspline.report.choice import (
     best_of,
     candidates,
     lengths,
+    ranked,
     usable,
 )
 from quatspline.report.compared import CURVES
@@ -148,13 +149,13 @@ def _way(ledger: Ledger, table: pd.DataFrame, pool: pd.DataFrame, best: str) -> 
         yield Finding(ADVICE, ("It comes to a stop at a keyframe.",))
     rows = usable(table)
     wander = lengths(rows) > ROUNDABOUT * lengths(pool).min()
-    fairer = rows[wander & (rows["torque"] < torque.value)].sort_values(["torque", "scheme"])
+    fairer = ranked(rows[wander & (rows["torque"] < torque.value)])
     if len(fairer):
         name = str(fairer["scheme"].iloc[0])
         own, way = (ledger("compare", column, scheme=name) for column in ("torque", "length"))
-        turns = (f"Passed over for wandering: {name} turns ", multiple(way), " rad; ")
+        head = (f"Passed over for wandering: {name} turns ", multiple(way), " rad; ")
         more = (f"the torque of {best} is ", multiple(torque, own), " times its own.")
-        yield Finding(ADVICE, (*turns, *(more if own.value else ("it needs no torque.",))))
+        yield Finding(ADVICE, (*head, *(more if own.value else ("it needs no torque.",))))
 
 
 def _noted(ledger: Ledger, table: pd.DataFrame) -> Iterator[Finding]:

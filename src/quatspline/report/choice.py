@@ -45,7 +45,11 @@ def candidates(table: pd.DataFrame) -> pd.DataFrame:
     works = usable(table)
     if works.empty:
         return works
-    pool = _direct(next(level for level in _levels(works) if not _astray(level, works)))
+    return ranked(_direct(next(level for level in _levels(works) if not _astray(level, works))))
+
+
+def ranked(pool: pd.DataFrame) -> pd.DataFrame:
+    """Rows, best first."""
     rows = pool.to_dict("records")
     return pool.iloc[sorted(range(len(pool)), key=lambda i: _rank(rows[i]))]
 
