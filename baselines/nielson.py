@@ -71,6 +71,7 @@ class Nielson(SegmentCurve):
     support = None
     constant_rate = "everywhere"
     iterative = True
+    rescue = {"method": "newton"}
     family = TRIANGLE
     operations = {
         "slerps per sample": 6,

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from quatspline.experiment import Run
+from quatspline.experiment import FULL, QUICK, Run
 from quatspline.instruments.speed import FILL, FLOORS, SINCOS, Task, measured, starts, tasks
 from quatspline.instruments.timing import LEAST
 from quatspline.registry import found, version
@@ -27,7 +27,7 @@ FORMATS = {
     "times_fill": ".3g",
     "times_sincos": ".3g",
 }
-ROUNDS = {"quick": 3, "full": 9}
+ROUNDS: dict[str, int] = {QUICK: 3, FULL: 9}
 START = "start"
 MANY = 1_000_000
 """Keyframes from which one round is enough: calls last seconds."""
@@ -38,9 +38,9 @@ def cells(run: Run) -> list[dict[str, str]]:
 
 
 def measure_cell(run: Run, task: str) -> list[dict[str, object]]:
-    rounds = ROUNDS["quick" if run.quick else "full"]
+    rounds = ROUNDS[run.size]
     if task == START:
-        return _starts(rounds, run.quick)
+        return _starts(rounds, run)
     chosen = next(t for t in tasks(run.rng("speed"), run.quick) if t.name == task)
     names = run.schemes or [name for name, item in found().items() if item.scheme is not None]
     return _rows(chosen, run, names, rounds if chosen.keyframes < MANY else 1)
@@ -74,16 +74,16 @@ def _rows(task: Task, run: Run, names: list[str], rounds: int) -> list[dict[str,
     return rows
 
 
-def _starts(rounds: int, quick: bool) -> list[dict[str, object]]:
+def _starts(rounds: int, run: Run) -> list[dict[str, object]]:
     rows: list[dict[str, object]] = []
-    for name, seconds in starts(min(rounds, 5), quick):
+    for name, seconds in starts(min(rounds, 5), run.quick):
         low, middle, high = np.percentile(seconds, [25, 50, 75])
         base: dict[str, object] = {
             "task": START,
             "scheme": name,
             "unit": "process",
             "timed_items": 1,
-            "run_size": "quick" if quick else "full",
+            "run_size": run.size,
         }
         rows.append(base | {"seconds_median": float(middle), "seconds_iqr": float(high - low)})
     return rows

@@ -17,11 +17,13 @@ TIMES = ["seconds_set_up", "seconds_per_sample"]
 
 
 def row(scheme: str, **given: object) -> dict[str, object]:
-    """A good row: local, C2, fair; a failed one has nothing else."""
+    """A good row: local, C2, fair, of a length of its own; a failed one has nothing else."""
     if "failure" in given:
         return {"scheme": scheme, **given}
+    length = 1.0 + sum(map(ord, scheme)) / 1e4
     good = {"continuity": 2, "misses": 1e-15, "torque": 1.0, "jerk": 1.0, "peak": 1.0}
-    good |= {"key_speed": 0.5, "peak_speed": 1.5, "length": 1.0, "support": "4"}
+    good |= {"key_speed": 0.5, "peak_speed": 1.5, "length": length, "support": "4"}
+    good["keyframes_length"] = 1.0
     return good | dict.fromkeys(TIMES, 1e-8) | {"scheme": scheme} | given
 
 
@@ -42,9 +44,97 @@ QUICK = {"seconds_per_sample": 1e-10}
 
 def test_one_scheme_has_the_least_torque_and_nothing_to_be_compared_with() -> None:
     assert told(row("a")) == [
-        "Take a: it passes through the keyframes (largest miss 1e-15 rad), is C2 as measured here, has the least "
-        "torque of all measured, and a changed keyframe changes the curve nearby only."
+        "Take a: it passes through the keyframes (largest miss 1e-15 rad), is C2 as measured here, and a changed "
+        "keyframe changes the curve nearby only."
     ]
+
+
+def test_what_failed_is_not_compared_with() -> None:
+    assert "of all measured" not in told(row("a"), row("b", failure="no"))[0]
+    assert "has the least torque of all measured" in told(row("a"), row("b", torque=2.0))[0]
+
+
+AT_REST = {"torque": 0.0, "jerk": 0.0, "peak": 0.0}
+
+
+@pytest.mark.parametrize(
+    ("energies", "length", "reason"),
+    [
+        (AT_REST, 3e-16, "the keyframes do not move"),
+        (AT_REST, 2.0, "the keyframes turn about one axis at a constant rate"),
+        ({"torque": 2.0}, 2.0, "their curves coincide on these keyframes"),
+    ],
+)
+def test_curves_that_are_one_are_said_to_be(
+    energies: dict[str, float], length: float, reason: str
+) -> None:
+    same = {name: value * (1.0 + 1e-8) for name, value in energies.items()}
+    way = {"length": length, "keyframes_length": length}
+    rows = [row("a", **energies, **way), row("b", **same, **way, **GLOBAL)]
+    rows += [row("quartic", **same, **way), row("c", **way | {"torque": 2.0001})]
+    rows += [row("d", failure="no")]
+    lines = told(*rows)
+    assert ("of all measured" in lines[0]) == (energies["torque"] > 0.0)
+    assert lines[1] == (
+        "3 of the 4 schemes measured are alike here (in torque, length and peak acceleration, to six digits): "
+        f"{reason}. Any of them will do."
+    )
+    assert not any("quartic has" in line for line in lines)
+    assert lines[2:] == ["Not measured: d (no)."]
+
+
+def test_curves_of_one_torque_that_take_another_way_are_not_alike() -> None:
+    for given in ({"peak": 1.1}, {"length": 1.2}, {"torque": 1.00001}):
+        assert not any("alike" in line for line in told(row("a"), row("b", **given)))
+
+
+# -- wandering ----------------------------------------------------------------------------------
+
+
+def test_a_curve_that_wanders_is_passed_over_and_named() -> None:
+    """Attitudes with dwells between: the fairest turn ten times as far as the keyframes need."""
+    lines = told(
+        row("a", length=35.8, keyframes_length=3.43),
+        row("b", length=7.12, keyframes_length=3.43, torque=10.0),
+        row("c", length=10.6, keyframes_length=3.43, torque=30.0),
+    )
+    assert lines[0].startswith("Take b: ")
+    assert lines[1:] == [
+        "It turns 7.12 rad where the keyframes need 3.43.",
+        "Passed over for wandering: a turns 35.8 rad; the torque of b is 10.0 times its own.",
+    ]
+
+
+@pytest.mark.parametrize(
+    "evil", [{"key_speed": 0.0}, {"continuity": 1}, {"continuity": 1, "key_speed": 0.0}]
+)
+def test_a_stop_or_a_jump_is_a_lesser_evil_than_going_astray(evil: dict[str, float]) -> None:
+    direct = row("a", torque=9.0, length=2.0, **evil)
+    for length, taken in ((5.9, "b"), (6.1, "a")):
+        lines = told(direct, row("b", length=length))
+        assert lines[0].startswith(f"Take {taken}: ")
+        stops = taken == "a" and "key_speed" in evil
+        assert ("It comes to a stop at a keyframe." in lines) == stops
+
+
+def test_a_longer_way_within_reason_is_no_fault() -> None:
+    lines = told(row("a", length=1.49), row("b", length=1.0, torque=2.0))
+    assert lines[0].startswith("Take a: ")
+    assert not any("rad where" in line for line in lines)
+
+
+def test_rounding_of_a_body_at_rest_is_no_way() -> None:
+    rows = [row("a", **AT_REST, length=3e-13, keyframes_length=0.0)]
+    rows += [row("b", **AT_REST, length=5e-30, keyframes_length=0.0)]
+    assert not any("turns" in line or "Passed" in line for line in told(*rows))
+
+
+def test_a_note_is_said() -> None:
+    note = "the published iteration did not converge on these keyframes"
+    assert told(row("a"), row("nielson", torque=2.0, note=note))[1:] == [f"Of nielson: {note}."]
+
+
+# -- the sentences ------------------------------------------------------------------------------
 
 
 def test_a_fairer_scheme_is_named_with_what_speaks_against_it() -> None:

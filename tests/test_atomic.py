@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import secrets
 import shutil
@@ -75,9 +76,41 @@ def test_two_writers_of_one_name_do_not_meet(tmp_path: Path) -> None:
 def test_what_a_killed_writer_left_is_cleared(tmp_path: Path) -> None:
     with replacing(tmp_path / "k", ASIDE) as aside:
         aside.write_text("half")
-        shutil.copy(aside, tmp_path / f".k.0{ASIDE}")
+        shutil.copy(aside, tmp_path / f".k.{16 * '0'}{ASIDE}")
     clear_asides(tmp_path)
     assert os.listdir(tmp_path) == ["k"]
+
+
+def test_what_only_ends_as_ours_do_is_not_cleared(tmp_path: Path) -> None:
+    names = [f".a{ASIDE}", f".a.0123{ASIDE}", f".a.{16 * 'g'}{ASIDE}", f".{16 * '0'}{ASIDE}"]
+    for name in names:
+        (tmp_path / name).write_text("foreign")
+    (tmp_path / f".d.{16 * '0'}{ASIDE}").mkdir()
+    (tmp_path / f".l.{16 * '0'}{ASIDE}").symlink_to("nowhere")
+    before = sorted(os.listdir(tmp_path))
+    clear_asides(tmp_path)
+    assert sorted(os.listdir(tmp_path)) == before
+
+
+def test_what_cannot_be_written_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "k"
+    for made in (OSError(errno.ENOSPC, "full"), OSError(errno.EIO, "bad", "other")):
+        with pytest.raises(OSError, match=r"full|bad") as told, replacing(path):
+            raise made
+        assert told.value.filename == (made.filename if "bad" in str(made) else str(path))
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_link_is_followed_or_replaced(tmp_path: Path) -> None:
+    (tmp_path / "in").mkdir()
+    link = tmp_path / "in" / "link"
+    link.symlink_to("../outside")
+    for follow in (True, False):
+        with replacing(link, follow=follow) as aside:
+            aside.write_text(str(follow))
+        assert link.is_symlink() == follow
+        assert (tmp_path / "outside").read_text() == "True"
+    assert link.read_text() == "False"
 
 
 def test_a_long_name_leaves_room_for_the_one_aside(tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ from quatspline.comparing import COLUMNS
 from quatspline.keyframes import Keyframes
 from quatspline.report import advice
 from quatspline.report.quotes import Quote
+from quatspline.rescue import unsolved
 from quatspline.solving import SolveReport, require_converged
 from quatspline.trajectories.edges import edge_cases
 from quatspline.trajectories.files import Motion, write
@@ -93,11 +94,14 @@ def test_stopping_at_keyframes_or_missing_them_is_not_recommended(table: pd.Data
     assert "local-quintic" not in set(advice.candidates(spoilt)["scheme"])
 
 
+MISSES = {"jacobi": 0.3, "newton": np.inf}
+
+
 def test_a_failure_that_readers_know_is_said(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def fit(self: qs.Curve, keyframes: Keyframes) -> None:
-        report = SolveReport("jacobi", "residual", 77, 1e-16, 0.3, False, 1e-9)
+    def fit(self: qs.Curve, keyframes: Keyframes, *, method: str = "jacobi") -> None:
+        report = SolveReport(method, "residual", 77, 1e-16, MISSES[method], False, 1e-9)
         require_converged("nielson", report, tracks=False)
 
     monkeypatch.setattr(qs.scheme("nielson"), "_fit", fit)
@@ -111,7 +115,11 @@ def test_a_failure_that_readers_know_is_said(
         told = capsys.readouterr().out.splitlines()
         head = "Take kim: " if "kim" in schemes else "No recommendation: nothing was measured."
         assert told[0].startswith(head)
-        assert told[-1].startswith("Not measured: nielson (ConvergenceError: it (jacobi) did not")
+        assert told[-1] == (
+            "Not measured: nielson (the published iteration did not converge: after 77 iterations it still misses "
+            "keyframes by 0.3 rad; nor did Newton's method: after 77 iterations it still misses keyframes by more "
+            "than can be told)."
+        )
         written = (out / "recommendation.md").read_text().splitlines()
         assert written[2:] == [f"- {line}" for line in told]
         assert "did not converge" in (out / "report.html").read_text()
@@ -134,6 +142,79 @@ def test_command_writes_table_figures_advice_and_page(
     files = json.loads((out / "manifest.json").read_text())["files"]
     assert "report.html" in files
     assert "Take local-quintic" in (out / "report.html").read_text()
+
+
+FAILS = [
+    [0.0, 2.19166667, 2.3],
+    [
+        [0.963736255, 0.250763154, 0.0912703239, 0.0],
+        [1.0, 0.0, 0.0, 0.0],
+        [0.918865601, 0.370775139, 0.134951114, 0.0],
+    ],
+]
+"""Uneven by 1 to 20: Nielson's iteration ends at a wrong fixed point."""
+
+
+def test_a_scheme_is_judged_and_not_its_iteration() -> None:
+    with pytest.raises(qs.ConvergenceError):
+        qs.build("nielson", *FAILS)
+    table = qs.compare(*FAILS, ["nielson", "kim"]).set_index("scheme")
+    row = table.loc["nielson"]
+    assert pd.isna(row["failure"])
+    assert row["misses"] < 1e-9
+    assert row["torque"] > 0.0
+    assert table["solver"].to_dict() == {"nielson": "newton", "kim": "newton"}
+    assert re.fullmatch(
+        r"the published iteration did not converge on these keyframes \(after \d+ iterations it still misses "
+        r"keyframes by 0\.\d+ rad\); the curve was found by Newton's method",
+        row["note"],
+    )
+    assert pd.isna(table.loc["kim", "note"])
+    assert f"Of nielson: {row['note']}." in advice.lines(advice.recommendation(table.reset_index()))
+
+
+@pytest.mark.parametrize(
+    ("change", "residual", "said"),
+    [
+        (7.17e-17, 0.311, "it still misses keyframes by 0.31 rad"),
+        (0.157, np.inf, "it still misses keyframes by more than can be told"),
+        (0.157, np.nan, "it still misses keyframes by more than can be told"),
+        (1.22e-7, 1e-15, "it has not settled: the last changed it by 1e-07 of its size"),
+        (np.inf, 1e-15, "its numbers overflow"),
+    ],
+)
+def test_what_did_not_converge_is_said_plainly(change: float, residual: float, said: str) -> None:
+    for count, after in ((2000, "after 2000 iterations "), (1, "after 1 iteration ")):
+        report = SolveReport("newton", "residual", count, change, residual, False, 1e-9)
+        assert unsolved(report) == after + said
+
+
+def test_the_keyframes_own_way_closes_where_the_curve_does() -> None:
+    q = [[1, 0, 0, 0], [np.cos(0.2), np.sin(0.2), 0, 0], [np.cos(0.5), np.sin(0.5), 0, 0]]
+    for closed, times in ((False, None), (True, [0, 1, 2, 3])):
+        table = qs.compare(times, q, ["slerp"], closed=closed)
+        assert table["keyframes_length"][0] == pytest.approx(1.0 + closed)
+        assert table["length"][0] == pytest.approx(1.0 + closed)
+
+
+def test_a_curve_that_turns_round_and_round_is_said_to() -> None:
+    """A step of 74 degrees within a five-hundredth of a dwell: quartic turns 272 rad, not 1.29."""
+    keyframes = [[1, 0, 0, 0], [1, 0, 0, 0], [0.8, 0.6, 0, 0], [0.8, 0.6, 0, 0]]
+    table = qs.compare([0, 10, 10.02, 20], keyframes, ["quartic"])
+    lines = list(advice.lines(advice.recommendation(table)))
+    assert lines[1:] == ["It turns 272 rad where the keyframes need 1.29."]
+
+
+def test_of_attitudes_with_dwells_between_the_curve_that_wanders_least_is_taken() -> None:
+    turns = np.cumsum([0.0, 0.0, 1.2, 0.0, 0.9])
+    tilted = [quaternion.exp(np.array([0.1 * k, a / 2, 0.0])) for k, a in enumerate(turns)]
+    keyframes = np.array(tilted)[[0, 0, 2, 2, 4]]
+    names = ["kim", "local-quintic", "moving-frame", "quartic"]
+    table = qs.compare([0, 240, 270, 510, 540], keyframes, names).set_index("scheme")
+    taken = advice.candidates(table.reset_index())["scheme"].tolist()
+    shortest = table["length"].min()
+    assert table["torque"].idxmin() not in taken
+    assert taken == [name for name in table.index if table.loc[name, "length"] <= 1.5 * shortest]
 
 
 def test_rounding_of_curves_at_rest_is_not_compared() -> None:

@@ -44,6 +44,14 @@ def found(results: Results) -> dict[str, str]:
     return {name: json.dumps(value) for name, value in rows.items()}
 
 
+def test_cells_are_not_kept_through_a_link(results: Results, path: Path) -> None:
+    path.unlink()
+    path.symlink_to("../outside")
+    with pytest.raises(ValueError, match=r"swept\.jsonl: is a link"):
+        Kept(results, "swept", "print")
+    assert not (results.folder / "outside").exists()
+
+
 def test_what_is_kept_comes_back(results: Results, path: Path) -> None:
     before = path.read_bytes()
     assert found(results) == ROWS

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import subprocess
@@ -12,6 +13,8 @@ from pathlib import Path
 import pytest
 
 from quatspline import cli, comparing, experiment, registry
+from quatspline.atomic import ASIDE, naming
+from quatspline.report.results import Results
 
 KEYS = "t,qw,qx,qy,qz\n0,1,0,0,0\n1,0.8,0.6,0,0\n2,0.6,0.8,0,0\n3,0,1,0,0\n"
 EXPERIMENT = """
@@ -193,8 +196,97 @@ def test_a_full_disk_is_told_in_a_line(desk: Path) -> None:
     with process("run", "told", "else", preexec_fn=little_room) as full:
         said = full.communicate()[1]
     assert full.returncode == 1
-    assert said.splitlines()[-1].startswith("quatspline: OSError: [Errno 27] File too large")
+    assert said.splitlines()[-1].startswith("quatspline: results/")
+    assert said.endswith(": cannot be written: File too large\n")
     assert "Traceback" not in said
     assert (desk / "results" / "told.csv").read_bytes() == before
     assert "told" in json.loads((desk / "results" / "manifest.json").read_text())["experiments"]
     assert cli.main(["run", "told", "else"]) == 0
+
+
+# -- streams ------------------------------------------------------------------------------------
+
+COMMANDS = [
+    ["list"],
+    ["compare", "compare.csv", "--schemes", "slerp", "--out", "out"],
+    ["sample", "compare.csv", "--scheme", "slerp", "--count", "2"],
+    ["sample", "compare.csv", "--scheme", "slerp", "--count", "2", "-o", "new.csv"],
+    ["run", "told"],
+    ["report"],
+]
+
+
+def shell(redirected: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """The command as a shell runs it, with its streams redirected."""
+    environment = os.environ | {"PYTHONPATH": str(registry.PACKAGE.parent)}
+    line = f'exec "$@" {redirected}'
+    command = ["sh", "-c", line, "sh", sys.executable, "-m", "quatspline", *arguments]
+    return subprocess.run(command, env=environment, capture_output=True, text=True)
+
+
+@pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
+def test_a_closed_stdout_is_told_before_any_work(desk: Path, command: list[str]) -> None:
+    before = sorted(os.listdir(desk))
+    done = shell(">&-", *command)
+    told = "quatspline: standard output is closed: point it to a file or to /dev/null\n"
+    assert (done.returncode, done.stderr) == (2, told)
+    assert sorted(os.listdir(desk)) == before
+
+
+def test_what_is_said_on_a_closed_stderr_does_not_go_to_stdout(desk: Path) -> None:
+    done = shell("2>&-", "sample", "compare.csv", "--scheme", "slerp", "--count", "x")
+    assert (done.returncode, done.stdout) == (2, "")
+    done = shell("2>&-", "sample", "none.csv", "--scheme", "slerp", "--count", "2")
+    assert (done.returncode, done.stdout) == (2, "")
+
+
+@pytest.mark.parametrize("command", [COMMANDS[0], COMMANDS[2]], ids=" ".join)
+@pytest.mark.parametrize(
+    ("redirected", "why"),
+    [(">/dev/full", "No space left on device"), ("1</dev/null", "Bad file descriptor")],
+)
+def test_a_stdout_that_takes_nothing_is_told_in_a_line(
+    desk: Path, command: list[str], redirected: str, why: str
+) -> None:
+    if not Path("/dev/full").exists():
+        pytest.skip("no device here that is always full")
+    done = shell(redirected, *command)
+    told = f"quatspline: standard output: cannot be written: {why}\n"
+    assert (done.returncode, done.stderr) == (1, told)
+
+
+def test_a_hidden_file_in_a_folder_that_is_not_ours_outlives_a_refused_run(
+    desk: Path, refused: Refused
+) -> None:
+    (desk / "fo").mkdir()
+    hidden = [f".a{ASIDE}", f".a.{16 * '0'}{ASIDE}"]
+    for name in ("compare.md", *hidden):
+        (desk / "fo" / name).write_text("mine")
+    refused("compare", "compare.csv", "--schemes", "slerp", "--out", "fo")
+    assert sorted(os.listdir(desk / "fo")) == sorted(["compare.md", *hidden])
+
+
+def test_compare_writes_nothing_through_a_link_that_leads_nowhere(
+    desk: Path, refused: Refused
+) -> None:
+    (desk / "out").mkdir()
+    (desk / "out" / "compare.md").symlink_to("../missing.txt")
+    command = ["compare", "compare.csv", "--schemes", "slerp", "--out", "out"]
+    assert refused(*command).startswith("out/compare.md: not written by quatspline")
+    assert cli.main([*command, "--force"]) == 0
+    assert not (desk / "missing.txt").exists()
+    assert not (desk / "out" / "compare.md").is_symlink()
+
+
+def test_the_recommendation_is_said_before_the_page_fails(
+    desk: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(self: Results, name: str, figure: object) -> None:
+        with naming(self.folder / name):
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(Results, "figure", full)
+    assert cli.main(["compare", "compare.csv", "--schemes", "kim", "--out", "out"]) == 1
+    told = capsys.readouterr()
+    assert told.out.startswith("Take kim: ")
+    assert told.err == "quatspline: out/compare: cannot be written: No space left on device\n"

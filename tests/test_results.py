@@ -14,9 +14,10 @@ import pytest
 from matplotlib.figure import Figure
 
 import quatspline
+from quatspline.journal import Journal
 from quatspline.report import provenance as module
 from quatspline.report.manifest import sha256
-from quatspline.report.results import Journal, Results, markdown
+from quatspline.report.results import Results, markdown
 
 
 @pytest.fixture

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from quatspline.atomic import ASIDE
 from quatspline.locking import LOCK, sole_writer
 from quatspline.report import store
 from quatspline.report.results import Results
@@ -103,6 +104,43 @@ def test_files_of_other_names_are_no_obstacle_and_are_not_listed(folder: Path) -
     run(folder, "a")
     assert (folder / "README.md").read_text() == "precious"
     assert sorted(manifest(folder)["files"]) == FILES
+
+
+ASIDES = [f".a{ASIDE}", f".a.{16 * '0'}{ASIDE}"]
+
+
+@pytest.mark.parametrize("ours", [False, True])
+def test_files_aside_are_cleared_in_its_own_folder_alone(tmp_path: Path, ours: bool) -> None:
+    out = tmp_path / "out"
+    out.mkdir()
+    if ours:
+        run(out, "b")
+    for name in ASIDES:
+        (out / name).write_text("mine")
+    with Results(out).writing():
+        pass
+    assert [(out / name).exists() for name in ASIDES] == [True, not ours]
+
+
+LINKED = ["a.csv", "report.html", "manifest.json", ".journal.json"]
+
+
+@pytest.mark.parametrize("name", LINKED)
+@pytest.mark.parametrize("there", [False, True])
+def test_a_link_is_a_foreign_file_and_nothing_is_written_through_it(
+    folder: Path, name: str, there: bool
+) -> None:
+    outside = folder.parent / "outside"
+    if there:
+        outside.write_text("precious")
+    (folder / name).unlink(missing_ok=True)
+    (folder / name).symlink_to("../outside")
+    with pytest.raises(ValueError, match="not written by quatspline in this folder"):
+        run(folder, "a")
+    assert (folder / name).is_symlink()
+    run(folder, "a", force=True)
+    assert (folder / name).is_symlink() == (name == ".journal.json")  # nothing is noted here
+    assert (outside.read_text() if outside.exists() else None) == ("precious" if there else None)
 
 
 def test_a_folder_where_a_file_is_to_be_written_is_refused(folder: Path) -> None:

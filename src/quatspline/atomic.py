@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,19 +13,37 @@ PART = ".part"
 ASIDE = ".quatspline.part"
 """How names of files aside end in a folder with one writer: what a killed one left is known by it."""
 
+OURS = re.compile(rf"\..+\.[0-9a-f]{{16}}{re.escape(ASIDE)}", re.DOTALL)
+"""Names of files aside, of which anybody else's that only end alike are none."""
+
 SHOWN = 32
 """Characters of the target's name that a file aside bears: a long name has room for no more."""
 
 
 @contextmanager
-def replacing(path: Path, end: str = PART) -> Iterator[Path]:
+def replacing(path: Path, end: str = PART, *, follow: bool = True) -> Iterator[Path]:
     """A path to write to, renamed onto ``path`` when the block ends well and removed otherwise.
 
     The file aside is new, in the target's folder, under a name that nobody else has.  It takes the
-    mode of the file that it replaces, a new one what the umask leaves; links are followed.  ``end`` is
-    how its name ends.
+    mode of the file that it replaces, a new one what the umask leaves.  ``end`` is how its name ends;
+    without ``follow`` a link is replaced and not what it leads to.  An OSError names the path.
     """
-    target = Path(os.path.realpath(path))
+    with naming(path):
+        yield from _replacing(Path(os.path.realpath(path)) if follow else path, end)
+
+
+@contextmanager
+def naming(where: str | Path) -> Iterator[None]:
+    """An OSError of what is written here names the place: that of a full disk has none."""
+    try:
+        yield
+    except OSError as error:
+        if error.filename is None and error.errno is not None:
+            error.filename = str(where)
+        raise
+
+
+def _replacing(target: Path, end: str) -> Iterator[Path]:
     if target.exists() and not target.is_file():
         yield target  # a device or a pipe: renaming would replace it
         return
@@ -49,9 +68,10 @@ def _settle(aside: Path, mode: int | None) -> None:
 
 
 def clear_asides(folder: Path) -> None:
-    """Remove what killed writers left in a folder whose only writer this process is."""
+    """Remove what killed writers left in a folder of ours whose only writer this process is."""
     for aside in folder.glob(f".*{ASIDE}"):
-        aside.unlink(missing_ok=True)
+        if OURS.fullmatch(aside.name) and aside.is_file() and not aside.is_symlink():
+            aside.unlink(missing_ok=True)
 
 
 def same_file(one: str | Path, other: str | Path) -> bool:

@@ -8,24 +8,23 @@ from __future__ import annotations
 
 import argparse
 import errno
-import math
 import os
 import sys
 import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, NoReturn
+from typing import TYPE_CHECKING, Any
 
-from quatspline import __version__
-from quatspline.atomic import same_file
+from quatspline.arguments import REFUSED, parser
+from quatspline.atomic import naming, same_file
+from quatspline.stdout import STDOUT, say
 
 if TYPE_CHECKING:
     from quatspline.registry import Found
     from quatspline.trajectories.files import Motion
 
-DONE, FAILED, REFUSED, INTERRUPTED = 0, 1, 2, 130
-
+DONE, FAILED, INTERRUPTED = 0, 1, 130
 
 FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS}
 """Errors that say all there is to say: a disk has no room, or may not be written any more."""
@@ -47,24 +46,35 @@ CLAIMS: tuple[tuple[str, Callable[[Any], Any]], ...] = (
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a command and return its exit status."""
     given = list(sys.argv[1:] if argv is None else argv)
+    if sys.stderr is None:  # closed: print would take stdout in its place
+        sys.stderr = open(os.devnull, "w")  # noqa: SIM115
+    if sys.stdout is None:  # and the next file that is opened would get its number
+        return _told("standard output is closed: point it to a file or to /dev/null", REFUSED)
     try:
-        arguments = _parser().parse_args(given)
+        arguments = parser().parse_args(given)
         arguments.command = ["quatspline", *given]
-        status = arguments.call(arguments)
-        sys.stdout.flush()
+        status = COMMANDS[arguments.name](arguments)
+        with naming(STDOUT):
+            sys.stdout.flush()
         return status
     except SystemExit as stop:  # argparse: help, version, bad usage
         return stop.code if isinstance(stop.code, int) else FAILED
     except KeyboardInterrupt:
         hint = ": the same command goes on where it stopped" if given[:1] == ["run"] else ""
         return _told(f"interrupted{hint}", INTERRUPTED)
-    except BrokenPipeError:  # the reader has seen enough; Python must not flush once more at exit
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except BrokenPipeError:  # the reader has seen enough
+        _give_up_stdout()
         return DONE
     except ValueError as error:
         return _told(str(error), REFUSED)
     except Exception as error:
         return _unforeseen(error)
+
+
+def _give_up_stdout() -> None:
+    """Have what it still holds go nowhere: Python flushes once more at exit."""
+    with suppress(OSError, ValueError):  # it may be no file of the system's
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _told(line: str, status: int) -> int:
@@ -79,121 +89,15 @@ def _note(line: str) -> None:
 def _unforeseen(error: Exception) -> int:
     from quatspline.solving import ConvergenceError
 
-    full = isinstance(error, OSError) and error.errno in FULL
-    if not full and not isinstance(error, ConvergenceError):
+    ours = isinstance(error, OSError) and error.filename == STDOUT
+    if ours:
+        _give_up_stdout()
+    if isinstance(error, OSError) and (ours or error.errno in FULL):
+        where = f"{error.filename}: " if error.filename is not None else ""
+        return _told(f"{where}cannot be written: {error.strerror}", FAILED)
+    if not isinstance(error, ConvergenceError):
         traceback.print_exception(error)
     return _told(f"{type(error).__name__}: {error}", FAILED)
-
-
-# -- arguments ----------------------------------------------------------------------------------
-
-
-class _Parser(argparse.ArgumentParser):
-    """Tells bad usage in one line."""
-
-    def error(self, message: str) -> NoReturn:
-        self.exit(REFUSED, f"{self.prog}: {message} (see {self.prog} --help)\n")
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(prog="quatspline", description="The benchmark of orientation interpolation.")
-    parser.add_argument("--version", action="version", version=f"quatspline {__version__}")
-    commands = parser.add_subparsers(metavar="COMMAND", required=True, dest="name")
-    commands.add_parser("list", help="schemes and what they claim").set_defaults(call=_list)
-    _add_run(commands)
-    _add_compare(commands)
-    _add_sample(commands)
-    _add_report(commands)
-    return parser
-
-
-def _add_run(commands: Any) -> None:
-    run = commands.add_parser(
-        "run",
-        help="experiments: tables, figures and a manifest",
-        description="Run experiments: by default all, the paper's in full and the others at quick "
-        "size. A run that was interrupted goes on where it stopped when started alike.",
-    )
-    run.add_argument("experiments", nargs="*", metavar="EXPERIMENT", help="by default all")
-    _add_schemes(run)
-    size = run.add_mutually_exclusive_group()
-    size.add_argument("--quick", dest="size", action="store_const", const="quick")
-    size.add_argument("--full", dest="size", action="store_const", const="full")
-    run.add_argument("--out", type=Path, default=Path("results"), metavar="DIR", help="%(default)s")
-    _add_force(run)
-    run.add_argument("--seed", type=_seed, default=0, metavar="N", help="%(default)s")
-    where = run.add_mutually_exclusive_group()
-    where.add_argument("--jobs", type=_count, metavar="N", help="processes; by default one a core")
-    where.add_argument("--dask", metavar="ADDRESS", help="a Dask scheduler that measures instead")
-    run.set_defaults(call=_run)
-
-
-def _add_compare(commands: Any) -> None:
-    compare = commands.add_parser("compare", help="schemes on your own keyframes")
-    _add_keyframes(compare, nargs="?")  # it may stand behind the words of --schemes
-    _add_schemes(compare)
-    where = "for tables, figures and the page; by default KEYFRAMES-compared here"
-    compare.add_argument("--out", type=Path, metavar="DIR", help=where)
-    _add_force(compare)
-    compare.set_defaults(call=_compare)
-
-
-def _add_sample(commands: Any) -> None:
-    sample = commands.add_parser("sample", help="a scheme's curve through keyframes, sampled")
-    _add_keyframes(sample)
-    sample.add_argument("--scheme", required=True, metavar="S", help="see quatspline list")
-    grid = sample.add_mutually_exclusive_group(required=True)
-    grid.add_argument("--rate", type=_rate, metavar="HZ", help="samples per time unit")
-    grid.add_argument(
-        "--count", type=_count, metavar="N", help="samples in all, both ends included"
-    )
-    sample.add_argument("-o", dest="file", metavar="FILE", help="by default CSV on stdout")
-    sample.set_defaults(call=_sample)
-
-
-def _add_report(commands: Any) -> None:
-    report = commands.add_parser("report", help="the page that shows the results")
-    report.add_argument(
-        "--out", type=Path, default=Path("results"), metavar="DIR", help="%(default)s"
-    )
-    _add_force(report)
-    report.add_argument("--open", action="store_true", help="in the browser")
-    report.set_defaults(call=_report)
-
-
-def _add_keyframes(parser: argparse.ArgumentParser, nargs: Literal["?"] | None = None) -> None:
-    kinds = (
-        "CSV (t,qw,qx,qy,qz, or columns named in a header), TUM (t tx ty tz qx qy qz qw) or NPZ "
-        "(times, quaternions, positions)"
-    )
-    parser.add_argument("keyframes", metavar="KEYFRAMES", help=kinds, nargs=nargs)
-    closing = "a closed curve: the last row repeats the first orientation, or times are uniform"
-    parser.add_argument("--closed", action="store_true", help=closing)
-
-
-def _add_schemes(parser: argparse.ArgumentParser) -> None:
-    names = "names, by blanks or commas"
-    parser.add_argument("--schemes", nargs="+", metavar="S", action="append", help=names)
-
-
-def _add_force(parser: argparse.ArgumentParser) -> None:
-    replaced = "replace files that quatspline did not write, or that were edited since"
-    parser.add_argument("--force", action="store_true", help=replaced)
-
-
-def _number(kind: type, accepts: Callable[[Any], bool], wanted: str) -> Callable[[str], Any]:
-    def parsed(text: str) -> Any:
-        with suppress(ValueError):
-            if accepts(value := kind(text)):
-                return value
-        raise argparse.ArgumentTypeError(f"{text!r}: {wanted} is expected")
-
-    return parsed
-
-
-_rate = _number(float, lambda value: 0.0 < value < math.inf, "a positive number")
-_count = _number(int, lambda value: value >= 1, "a whole number, at least 1,")
-_seed = _number(int, lambda value: value >= 0, "a whole number, at least 0,")
 
 
 # -- commands -----------------------------------------------------------------------------------
@@ -206,12 +110,9 @@ def _list(arguments: argparse.Namespace) -> int:
     rows = [["scheme", *(head for head, _ in CLAIMS)]]
     rows += [[item.name, *_claims(item)] for item in items if item.scheme is not None]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    for row in rows:
-        cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
-        print("  ".join(cells).rstrip())
-    for item in items:
-        if item.scheme is None:
-            print(f"{item.name.ljust(widths[0])}  n/a: {' '.join(str(item.problem).split())}")
+    say("  ".join(map(str.ljust, row, widths)).rstrip() for row in rows)
+    unusable = [item for item in items if item.scheme is None]
+    say(f"{i.name.ljust(widths[0])}  n/a: {' '.join(str(i.problem).split())}" for i in unusable)
     return DONE
 
 
@@ -292,7 +193,8 @@ def _sample(arguments: argparse.Namespace) -> int:
     if motion.unread:
         _note(f"{arguments.keyframes}: not carried: {', '.join(map(repr, motion.unread))}")
     if arguments.file is None:
-        files.write_csv(sys.stdout, samples)
+        with naming(STDOUT):
+            files.write_csv(sys.stdout, samples)
     else:
         files.write(arguments.file, samples)
     return DONE
@@ -318,3 +220,12 @@ def _naming(path: str) -> Iterator[None]:
         yield
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from error
+
+
+COMMANDS = {
+    "list": _list,
+    "run": _run,
+    "compare": _compare,
+    "sample": _sample,
+    "report": _report,
+}

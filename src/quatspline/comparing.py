@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -18,13 +18,15 @@ from quatspline.curve import Curve
 from quatspline.experiment import Run
 from quatspline.instruments.continuity import jumps, measured_continuity, rounding, speeds
 from quatspline.instruments.fairness import fairness
+from quatspline.instruments.own_times import timed
 from quatspline.instruments.practical import left_out
-from quatspline.instruments.timing import interleaved, repeated
 from quatspline.instruments.trials import Row, attempted, facts
 from quatspline.keyframes import Keyframes
 from quatspline.options import declared
-from quatspline.quaternion import FloatArray
 from quatspline.registry import scheme, schemes
+from quatspline.rescue import solved
+from quatspline.solving import ConvergenceError
+from quatspline.stdout import say
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -35,17 +37,16 @@ if TYPE_CHECKING:
 TOLERANCE = 1e-9
 """Of iterative schemes, in rad."""
 
-ROUNDS, LEAST, SLOW = 5, 2e-3, 0.02
-"""Of the timings: rounds, seconds a measurement, and the seconds from which one call is enough."""
-
 ENERGIES = ("torque", "jerk", "peak")
 TITLE = "Comparison on your keyframes"
 NOTE = (
     "continuity is k of C^k as measured on these keyframes; misses the largest angle at a keyframe (rad); torque the "
     "integral of |alpha|^2, jerk that of |alpha'|^2, peak the largest |alpha|, infinite where the velocity jumps, each "
-    "also over the least here; key_speed the least speed at an inner keyframe, peak_speed the largest, over the mean. "
-    "Iterative schemes solve to 1e-9. Every segment is measured, however many there are; failure says why a scheme was "
-    "not. Compare seconds within this table only."
+    "also over the least here; key_speed the least speed at an inner keyframe, peak_speed the largest, over the mean; "
+    "length what the curve turns, keyframes_length the sum of the steps between keyframes (rad). Iterative schemes "
+    "solve to 1e-9 by solver; note says where the published iteration failed and another found the curve. Every "
+    "segment is measured, however many there are; failure says why a scheme was not. Compare seconds within this "
+    "table only."
 )
 FILES = [
     *(f"compare{end}" for end in (".csv", ".md", ".png", ".svg", ".caption.txt")),
@@ -80,10 +81,12 @@ def compare(
 
     Returns
     -------
-    DataFrame with the columns scheme, continuity, misses, torque, jerk, peak, length (rad), the first
-    three over the least here, key_speed, peak_speed, support, iterations, rates, version, failure and
-    the timings seconds_set_up and seconds_per_sample; sorted by torque, failures last.  ``failure``
-    says why a scheme was not measured, all else in its row being NaN; it is NaN where one was.
+    DataFrame with the columns scheme, continuity, misses, torque, jerk, peak, length (rad), those
+    energies over the least here, keyframes_length (rad, the same in every row), key_speed, peak_speed,
+    support, solver, iterations, rates, version, note, failure and the timings seconds_set_up and
+    seconds_per_sample; sorted by torque, failures last.  ``failure`` says why a scheme was not
+    measured, what is measured in its row being NaN; it is NaN where one was.  ``note`` says where a
+    curve was not found by the published iteration but by the options of `Curve.rescue`.
 
     Raises
     ------
@@ -127,7 +130,8 @@ def _compared(
         row = attempted(measure)[0] if reason is None else {"failure": reason}
         rows.append({"scheme": name} | row)
     table = pd.DataFrame(rows).reindex(columns=COLUMNS)
-    for name, seconds in _timed(keyframes, curves).items():
+    table["keyframes_length"] = _steps(keyframes)
+    for name, seconds in timed(keyframes, curves).items():
         table.loc[table["scheme"] == name, list(seconds)] = list(seconds.values())
     for name in ENERGIES:
         table[f"{name}_over_least"] = _over_least(table[name])
@@ -148,28 +152,29 @@ def _over_least(values: pd.Series) -> pd.Series:
 COLUMNS = [
     *("scheme", "continuity", "misses"),
     *(f"{name}_over_least" for name in ENERGIES),
-    *("key_speed", "peak_speed", *ENERGIES, "length"),
+    *("key_speed", "peak_speed", *ENERGIES, "length", "keyframes_length"),
     *(
         "support",
+        "solver",
         "iterations",
         "rates",
         "version",
         "seconds_set_up",
         "seconds_per_sample",
+        "note",
         "failure",
     ),
 ]
 
 
-def _built(name: str, keyframes: Keyframes) -> Curve:
-    cls = scheme(name)
-    given = {"tolerance": TOLERANCE} if "tolerance" in declared(cls._fit) else {}
-    return cls.from_keyframes(keyframes, **given)
-
-
 def _measured(name: str, keyframes: Keyframes, curves: dict[str, Curve]) -> list[Row]:
     """The row of one scheme; its curve is kept for timings and figures."""
-    curve = _built(name, keyframes)
+    cls = scheme(name)
+    given = {"tolerance": TOLERANCE} if "tolerance" in declared(cls._fit) else {}
+    try:
+        curve, note = solved(cls, keyframes, **given)
+    except ConvergenceError as error:  # in words for a table
+        return [{"failure": str(error)}]
     smooth = measured_continuity(jumps(curve))
     fair = _above_rounding(curve, fairness(curve))
     if smooth < 1:  # a jump of the velocity is an infinite torque, which no quadrature sees
@@ -183,6 +188,8 @@ def _measured(name: str, keyframes: Keyframes, curves: dict[str, Curve]) -> list
         "peak_speed": pace["peak_speed"],
         "support": "all" if curve.support is None else str(curve.support),
         "iterations": report.iterations if report else None,
+        "solver": report.method if report else None,
+        "note": note,
         **facts(curve),
     }
     curves[name] = curve  # of what failed, no seconds
@@ -198,44 +205,17 @@ def _above_rounding(curve: Curve, fair: Row) -> Row:
     return fair | dict.fromkeys(zero, 0.0)
 
 
+def _steps(keyframes: Keyframes) -> float:
+    """The sum of the angles between neighbouring keyframes, rad: what a curve turns that wanders nowhere."""
+    q = keyframes.quaternions
+    after = np.concatenate([q[1:], q[:1]]) if keyframes.closed else q[1:]
+    return float(quaternion.distance(q[: len(after)], after).sum())
+
+
 def _misses(curve: Curve) -> float:
     """The largest angle at a keyframe, rad."""
     at = curve.times[: curve.keyframes.count]
     return float(quaternion.distance(curve(at), curve.keyframes.quaternions).max())
-
-
-def _timed(keyframes: Keyframes, curves: dict[str, Curve]) -> dict[str, dict[str, float]]:
-    """Seconds of set-up and of a sample, interleaved; slow calls are timed once.
-
-    Set-up includes a sample every thousand segments: long curves are fitted where they are called.
-    """
-    first, last = float(keyframes.times[0]), float(keyframes.times[-1])
-    t, sparse = np.linspace(first, last, 1000), keyframes.times[:-1:1000].copy()
-    calls: dict[tuple[str, str], Callable[[], object]] = {}
-    for name, curve in curves.items():
-        calls[name, "seconds_set_up"] = partial(_ready, name, keyframes, sparse)
-        calls[name, "seconds_per_sample"] = partial(curve, t)
-    once = {key: _elapsed(call) for key, call in calls.items()}
-    quick = {"\t".join(key): repeated(calls[key]) for key, s in once.items() if s < SLOW}
-    for joined, timing in interleaved(quick, ROUNDS, least=LEAST).items():
-        name, column = joined.split("\t")
-        once[name, column] = timing.median
-    scale = {"seconds_set_up": 1.0, "seconds_per_sample": max(t.size, 1)}
-    return {
-        name: {column: once[name, column] / size for column, size in scale.items()}
-        for name in curves
-    }
-
-
-def _ready(name: str, keyframes: Keyframes, t: FloatArray) -> None:
-    _built(name, keyframes)(t)
-
-
-def _elapsed(call: Callable[[], object]) -> float:
-    call()
-    start = time.perf_counter()
-    call()
-    return time.perf_counter() - start
 
 
 # -- the command ---------------------------------------------------------------------------------
@@ -258,7 +238,7 @@ def command(
     """
     import matplotlib as mpl
 
-    from quatspline.report import advice, style
+    from quatspline.report import advice, compared, style
     from quatspline.report.page import own_scene, write_page
     from quatspline.report.page.sections import OWN
 
@@ -270,11 +250,12 @@ def command(
     table, curves = _compared(keyframes, schemes)
     table = results.table("compare", table, title=TITLE, note=NOTE, formats=FORMATS, keys=[])
     found = advice.recommendation(table)
+    say(advice.lines(found))  # before a disk runs full
     results.text("recommendation.md", advice.markdown(found))
     names = advice.shown(table)
     with style.house():
-        results.figure("compare", advice.bars(table))
-        results.figure("rates", advice.rates({name: curves[name] for name in names}, keyframes))
+        results.figure("compare", compared.bars(table))
+        results.figure("rates", compared.rates({name: curves[name] for name in names}, keyframes))
     results.text("compare.caption.txt", BARS)
     results.text("rates.caption.txt", RATES)
     entry = {"title": TITLE, "size": f"{keyframes.count} keyframes", "seed": None}
@@ -282,7 +263,5 @@ def command(
     results.finish()
     scene = own_scene("own", "Your keyframes", keyframes, motion.positions, names)
     page = write_page(results, title=TITLE, scenes=[scene], sections=OWN, findings=found)
-    for line in advice.lines(found):
-        print(line)
     print(page, file=sys.stderr)
     return 0

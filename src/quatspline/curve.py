@@ -92,6 +92,8 @@ class Curve(abc.ABC):
     """Counts that no machine changes: e.g. {"exps per sample": 3, "logs per keyframe": 1}."""
     departs: ClassVar[dict[str, str]] = {}
     """Conformance checks that a scheme does not pass, a peer run as published as a rule, each with its reason."""
+    rescue: ClassVar[dict[str, Any]] = {}
+    """Options that find the curve where the published iteration, the default, does not converge."""
     batched: ClassVar[bool] = False
     """Whether `_fit` and the evaluation take all tracks at once."""
 

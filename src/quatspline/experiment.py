@@ -28,7 +28,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Literal, Self, TypeVar
 
 from quatspline import registry
 from quatspline.options import nearest
@@ -40,6 +40,10 @@ if TYPE_CHECKING:
 FOLDERS = "QUATSPLINE_EXPERIMENTS"
 PATIENCE = 2.0
 """Seconds before a progress bar shows."""
+
+Size = Literal["quick", "full"]
+QUICK: Size = "quick"
+FULL: Size = "full"
 
 T = TypeVar("T")
 
@@ -59,10 +63,15 @@ class Run:
     schemes: list[str] | None = None
     seed: int = 0
 
+    @classmethod
+    def of(cls, size: Size, schemes: list[str] | None = None, seed: int = 0) -> Self:
+        """A run of a size by name."""
+        return cls(size == QUICK, schemes, seed)
+
     @property
-    def size(self) -> str:
+    def size(self) -> Size:
         """ "quick" or "full"."""
-        return "quick" if self.quick else "full"
+        return QUICK if self.quick else FULL
 
     def rng(self, *names: object) -> np.random.Generator:
         """A generator seeded by the run's seed and by names, whatever else was drawn before."""
@@ -96,6 +105,11 @@ class Experiment:
     def paper(self) -> bool:
         """Whether it is one of the paper's."""
         return bool(getattr(self.module, "PAPER", False))
+
+    @property
+    def size(self) -> Size:
+        """At which it runs unless asked otherwise."""
+        return FULL if self.paper else QUICK
 
     @property
     def derived(self) -> bool:

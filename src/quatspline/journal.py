@@ -1,8 +1,9 @@
-"""The journal of a sweep: its finished cells, a line each, appended as they finish.
+"""What an interrupted run had finished: its experiments, and the cells of a sweep.
 
-A line says of which run it is and bears a checksum of itself.  So each stands or falls alone: what a
-kill tore, a full disk cut short or a disk altered costs the cells of those lines and no other, and
-cells of other options or sources stay in the file, unused, for the run that they belong to.
+Cells are kept a line each, appended as they finish.  A line says of which run it is and bears a
+checksum of itself.  So each stands or falls alone: what a kill tore, a full disk cut short or a disk
+altered costs the cells of those lines and no other, and cells of other options or sources stay in the
+file, unused, for the run that they belong to.
 """
 
 from __future__ import annotations
@@ -11,11 +12,15 @@ import hashlib
 import json
 import os
 import sys
+from collections.abc import Mapping
 from contextlib import suppress
 from io import FileIO
 from typing import TYPE_CHECKING, Any
 
-from quatspline.atomic import ASIDE, clear_asides, replacing
+from quatspline.atomic import ASIDE, clear_asides, naming, replacing
+from quatspline.report.manifest import read_json, write_json
+from quatspline.report.provenance import now
+from quatspline.report.store import JOURNAL
 
 if TYPE_CHECKING:
     from quatspline.report.results import Results
@@ -25,6 +30,36 @@ SUM = ', "sum": "'
 """What stands between the content of a line and its checksum."""
 
 Cell = dict[str, Any]
+
+
+class Journal:
+    """The experiments that an interrupted run had finished: valid for one of the same fingerprint only."""
+
+    def __init__(self, results: Results, fingerprint: str) -> None:
+        self.results, self.path = results, results.folder / JOURNAL
+        found = read_json(self.path)
+        same = found.get("fingerprint") == fingerprint and found.pop("sum", None) == _sum(found)
+        fresh = {"fingerprint": fingerprint, "start": now(), "finished": {}}
+        self.content: dict[str, Any] = found if same else fresh
+
+    def finished(self, name: str) -> dict[str, Any] | None:
+        """The entry of an experiment that need not run again: its files are there, unchanged."""
+        entry = self.content["finished"].get(name)
+        return entry if entry and self.results.intact(entry["files"]) else None
+
+    def add(self, name: str, entry: Mapping[str, Any]) -> None:
+        """Note that an experiment has finished."""
+        self.content["finished"][name] = dict(entry)
+        write_json(self.path, self.content | {"sum": _sum(self.content)})
+
+    def close(self) -> None:
+        """The run is complete: forget."""
+        self.path.unlink(missing_ok=True)
+
+
+def _sum(content: Mapping[str, Any]) -> str:
+    """A checksum: an entry altered on the disk would enter the manifest."""
+    return _checksum(key(content).encode())
 
 
 class Kept:
@@ -39,6 +74,8 @@ class Kept:
     def __init__(self, results: Results, name: str, fingerprint: str) -> None:
         self.path = results.folder / FOLDER / f"{name}.jsonl"
         self.path.parent.mkdir(exist_ok=True)
+        if self.path.is_symlink():
+            raise ValueError(f"{self.path}: is a link, where finished cells are to be kept")
         clear_asides(self.path.parent)
         self.fingerprint = fingerprint
         self.rows: dict[str, list[dict[str, Any]]] = {}
@@ -65,7 +102,7 @@ class Kept:
         """Keep a cell's rows: on the disk before anything else can go wrong."""
         body = f'{{"run": {json.dumps(self.fingerprint)}, "cell": {key(cell)}, "rows": {rows}'
         line = f'{body}{SUM}{_checksum(body.encode())}"}}\n'.encode()
-        with FileIO(self.path, "a") as stream:
+        with naming(self.path), FileIO(self.path, "a") as stream:
             _append(stream, line)
         self.rows[key(cell)] = json.loads(rows)
 
@@ -104,6 +141,6 @@ def forget(results: Results, name: str) -> None:
         (results.folder / FOLDER).rmdir()
 
 
-def key(cell: Cell) -> str:
+def key(cell: Mapping[str, Any]) -> str:
     """What tells a cell from others."""
     return json.dumps(cell, sort_keys=True)

@@ -8,19 +8,17 @@ import traceback
 from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from quatspline import registry, sweeps
-from quatspline.experiment import Experiment, Run, experiments, fingerprint, found, reason
-from quatspline.journal import Kept, forget
-from quatspline.report.results import JOURNAL, PAGE, Journal, Results, now
+from quatspline.experiment import Experiment, Run, Size, experiments, fingerprint, found, reason
+from quatspline.journal import Journal, Kept, forget
+from quatspline.report.results import JOURNAL, PAGE, Results, now
 
 if TYPE_CHECKING:
     import pandas as pd
 
 __all__ = ["Run", "experiments", "fingerprint", "found", "run"]
-
-Size = Literal["quick", "full"]
 
 
 def run(
@@ -50,10 +48,7 @@ def run(
         raise ValueError("schemes: no name given")
     chosen = experiments(names)
     picked = [registry.scheme(name).name for name in schemes] if schemes is not None else None
-    runs = {
-        e.name: Run((size or ("full" if e.paper else "quick")) == "quick", picked, seed)
-        for e in chosen
-    }
+    runs = {e.name: Run.of(size or e.size, picked, seed) for e in chosen}
     with sweeps.workers(jobs, dask):
         results = Results(out, force=force)
         with results.writing():
@@ -84,9 +79,7 @@ def _outdated(chosen: Sequence[Experiment], results: Results) -> list[tuple[Expe
     others = sorted((set(earlier) & set(found())) - {e.name for e in chosen})
     derived = [e for e in (experiments(others) if others else []) if e.derived]
     entries = [(e, earlier[e.name]) for e in derived]
-    return [
-        (e, Run(entry["size"] == "quick", entry["schemes"], entry["seed"])) for e, entry in entries
-    ]
+    return [(e, Run.of(entry["size"], entry["schemes"], entry["seed"])) for e, entry in entries]
 
 
 def _write_page(results: Results, *, asked: bool) -> list[str]:
@@ -120,8 +113,7 @@ def _run_or_keep(experiment: Experiment, run: Run, results: Results, journal: Jo
         results.record(name, kept)
         forget(results, name)
         return
-    size = "quick" if run.quick else "full"
-    entry: dict[str, Any] = {"title": experiment.title, "size": size, "seed": run.seed}
+    entry: dict[str, Any] = {"title": experiment.title, "size": run.size, "seed": run.seed}
     entry |= {"schemes": run.schemes, "start": now(), "failure": None}
     began = time.perf_counter()
     try:
@@ -137,7 +129,7 @@ def _run_or_keep(experiment: Experiment, run: Run, results: Results, journal: Jo
     else:
         journal.add(name, results.manifest["experiments"][name])
         forget(results, name)
-        _say(f"{name}: done at {size} size in {entry['seconds']:.1f} s")
+        _say(f"{name}: done at {run.size} size in {entry['seconds']:.1f} s")
 
 
 def _perform(experiment: Experiment, run: Run, results: Results) -> None:
@@ -146,7 +138,7 @@ def _perform(experiment: Experiment, run: Run, results: Results) -> None:
         raise experiment.problem
     name, module = experiment.name, experiment.module
     assert module is not None
-    size = f"Size: {'quick' if run.quick else 'full'}; seed {run.seed}."
+    size = f"Size: {run.size}; seed {run.seed}."
     note = " ".join([*filter(None, [getattr(module, "NOTE", "")]), size])
     table = results.table(
         name,

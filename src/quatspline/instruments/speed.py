@@ -40,8 +40,8 @@ DEGREES = 40.0
 TOLERANCE = 1e-9
 """Of iterative schemes."""
 
-PATIENCE = {"quick": 0.02, "full": 0.1}
-"""Seconds that one call of a contender may take: slower ones get the first samples only,
+QUICK_PATIENCE, PATIENCE = 0.02, 0.1
+"""Seconds that one call of a contender may take at either size: slower ones get the first samples only,
 which lie as densely: some libraries take a step a segment."""
 PROBE = 100
 
@@ -144,7 +144,7 @@ def _affordable(task: Task, make: Callable[[int], Contender]) -> int:
 def tasks(rng: np.random.Generator, quick: bool) -> list[Task]:
     """The tasks of the speed table; quick leaves out those that take longest."""
     keyframes = walk(rng, 1000, DEGREES)[:, 0]
-    patience = PATIENCE["quick" if quick else "full"]
+    patience = QUICK_PATIENCE if quick else PATIENCE
     even = np.linspace(0.0, 999.0, 1_000_000)
     chosen = [
         _evaluation("evaluate", keyframes, even, patience),

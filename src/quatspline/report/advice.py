@@ -1,39 +1,35 @@
-"""What a comparison says: a recommendation with its reasons, each number tied to its cell, and figures."""
+"""What a comparison says: a recommendation with its reasons, each number tied to its cell."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from quatspline.curve import Curve
-from quatspline.instruments.derivatives import shape_rates
-from quatspline.keyframes import Keyframes
-from quatspline.quaternion import FloatArray
-from quatspline.registry import found as schemes_found
-from quatspline.report import style
+from quatspline.report.choice import (
+    MET,
+    ROUNDABOUT,
+    STOPS,
+    alike,
+    best_of,
+    candidates,
+    lengths,
+    ranked,
+    usable,
+)
+from quatspline.report.compared import CURVES
 from quatspline.report.findings import Finding
 from quatspline.report.quotes import Ledger, Part, Quote, multiple, said
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.figure import Figure
 
-MET = 1e-6
-"""Largest angle at a keyframe, in rad, that counts as passing through it."""
-FAIR = 1.05
-"""Torque within this of the least is as good as the least: nobody sees five per cent."""
-STOPS = 0.01
-"""A least speed at keyframes below this share of the mean is a stop."""
 EQUAL = 0.005
 """Torques that differ by a smaller share are the same to three digits, and said to be."""
 QUICKER = 50.0
 """Times quicker that a candidate must be for a word about it: on a busy machine a timing was seen to be off
 ten-fold, and what is said must not differ from run to run."""
-CURVES = 4
-"""Schemes drawn over time."""
-SAMPLES = 2000
 ADVICE = "recommendation"
 PAPERS = "quartic"
 """What a reader of the paper asks about."""
@@ -45,54 +41,33 @@ def recommendation(table: pd.DataFrame) -> list[Finding]:
     """The advice for a table of `quatspline.compare`, best reason first, then what was not measured and why.
 
     Candidates pass through the keyframes (to MET), are C2 as measured (C1 if none is), do not stop
-    at keyframes (unless all do), and have a torque within FAIR of the least among them.  Local
-    schemes go before global ones, then the least torque decides.
+    at keyframes (unless all do), and turn at most ROUNDABOUT times as far as the shortest of them.
+    Where that one still turns ASTRAY times as far as a curve that stops or is C1, those are
+    candidates, too.  Of a torque within FAIR of the least among them, local schemes go before global
+    ones, then the least torque decides.
     """
     ledger = Ledger(lambda name: table)
     pool = candidates(table)
     found = _reasons(ledger, table, pool) if len(pool) else [_nothing(table)]
-    return [*found, *_not_measured(ledger, table)]
+    return [*found, *_noted(ledger, table), *_not_measured(ledger, table)]
 
 
 def _reasons(ledger: Ledger, table: pd.DataFrame, pool: pd.DataFrame) -> list[Finding]:
-    best = _best(pool)
-    found = [_first(ledger, best)]
+    best = best_of(pool)
+    same = alike(table, best)
+    found = [_first(ledger, table, best, same)]
+    if len(same) > 1:
+        found.append(_same(ledger, table, best, same))
+    found += _way(ledger, table, pool, best)
     fairest, quicker = str(pool.iloc[0]["scheme"]), _quicker(pool, best)
     if fairest != quicker and not _equal(ledger, fairest, best):
         found.append(_fairest(ledger, fairest, best))
     if quicker is not None:
         found.append(_quickest(ledger, quicker, best))
     paper = table[(table["scheme"] == PAPERS) & table["failure"].isna()]
-    if best != PAPERS and len(paper) and np.isfinite(paper["torque_over_least"]).all():
+    if PAPERS not in same and len(paper) and np.isfinite(paper["torque_over_least"]).all():
         found.append(_paper(ledger))
     return found
-
-
-def candidates(table: pd.DataFrame) -> pd.DataFrame:
-    """The rows among which the recommendation chooses, best first: by torque, and those of equal torque by
-    what they claim, jerk and support.  No clock decides."""
-    pool = table[table["failure"].isna() & (table["misses"] <= MET) & np.isfinite(table["torque"])]
-    if pool.empty:
-        return pool
-    smoothest = pool[pool["continuity"] >= min(2, pool["continuity"].max())]
-    moving = smoothest[~(smoothest["key_speed"] < STOPS)]
-    ranked = moving if len(moving) else smoothest
-    return ranked.iloc[sorted(range(len(ranked)), key=lambda i: _rank(ranked.iloc[i]))]
-
-
-def _rank(row: pd.Series) -> tuple[Any, ...]:
-    """The less, the better."""
-    item = schemes_found().get(str(row["scheme"]))
-    claims = (item.scheme.continuity, item.scheme.order) if item and item.scheme else (0, 0)
-    torque, jerk = (float(f"{row[name]:.6g}") for name in ("torque", "jerk"))  # not by rounding
-    reach = np.inf if row["support"] == "all" else int(row["support"])
-    return torque, *(-claim for claim in claims), jerk, reach, str(row["scheme"])
-
-
-def _best(pool: pd.DataFrame) -> str:
-    fair = pool[pool["torque"] <= FAIR * pool["torque"].min()]
-    local = fair[fair["support"] != "all"]
-    return str((local if len(local) else fair).iloc[0]["scheme"])
 
 
 def _quicker(pool: pd.DataFrame, best: str) -> str | None:
@@ -125,7 +100,7 @@ def _over_least(ledger: Ledger, name: str, column: str, thing: str) -> tuple[Par
     return multiple(cell), f" times the least {thing} of all measured"
 
 
-def _first(ledger: Ledger, best: str) -> Finding:
+def _first(ledger: Ledger, table: pd.DataFrame, best: str, same: list[str]) -> Finding:
     misses = ledger("compare", "misses", scheme=best)
     digits = ".0e" if misses.value else ".0f"
     parts = said(
@@ -134,9 +109,61 @@ def _first(ledger: Ledger, best: str) -> Finding:
         misses=misses,
         k=ledger("compare", "continuity", scheme=best),
     )
-    if np.isfinite(ledger("compare", "torque_over_least", scheme=best).value):
+    torque, over_least = (
+        ledger("compare", column, scheme=best).value for column in ("torque", "torque_over_least")
+    )
+    shared = torque == 0.0 and len(same) > 1
+    if np.isfinite(over_least) and not shared and table["failure"].isna().sum() > 1:
         parts += ("has ", *_over_least(ledger, best, "torque", "torque"), ", ")
     return Finding(ADVICE, (*parts, f"and {_reach(ledger, best)}."))
+
+
+def _same(ledger: Ledger, table: pd.DataFrame, best: str, same: list[str]) -> Finding:
+    """That others are the same curve here, and for which simple reason."""
+    torque, length = (
+        ledger("compare", column, scheme=best).value for column in ("torque", "length")
+    )
+    reason = "their curves coincide on these keyframes"
+    if torque == 0.0:
+        turn = "turn about one axis at a constant rate" if length > MET else "do not move"
+        reason = f"the keyframes {turn}"
+    names = table.loc[table["failure"].isna(), "scheme"]
+    alike, measured = (
+        Quote(tuple(ledger("compare", "torque", scheme=name) for name in group), "count")
+        for group in (same, names)
+    )
+    text = f" schemes measured are alike here (in torque, length and peak acceleration, to six digits): {reason}. "
+    return Finding(ADVICE, (alike, " of the ", measured, text, "Any of them will do."))
+
+
+def _way(ledger: Ledger, table: pd.DataFrame, pool: pd.DataFrame, best: str) -> Iterator[Finding]:
+    """What is to be said of the way that the recommended curve takes, and of fairer ones that wander."""
+    length, path, pace, torque = (
+        ledger("compare", column, scheme=best)
+        for column in ("length", "keyframes_length", "key_speed", "torque")
+    )
+    if length.value > max(MET, ROUNDABOUT * path.value):
+        turns = ("It turns ", multiple(length), " rad where the keyframes need ", multiple(path))
+        yield Finding(ADVICE, (*turns, "."))
+    if pace.value < STOPS:
+        yield Finding(ADVICE, ("It comes to a stop at a keyframe.",))
+    rows = usable(table)
+    wander = lengths(rows) > ROUNDABOUT * lengths(pool).min()
+    fairer = ranked(rows[wander & (rows["torque"] < torque.value)])
+    if len(fairer):
+        name = str(fairer["scheme"].iloc[0])
+        own, way = (ledger("compare", column, scheme=name) for column in ("torque", "length"))
+        head = (f"Passed over for wandering: {name} turns ", multiple(way), " rad; ")
+        more = (f"the torque of {best} is ", multiple(torque, own), " times its own.")
+        yield Finding(ADVICE, (*head, *(more if own.value else ("it needs no torque.",))))
+
+
+def _noted(ledger: Ledger, table: pd.DataFrame) -> Iterator[Finding]:
+    """What stands beside the rows of schemes that were measured in another way than by default."""
+    for name in sorted(table.loc[table["note"].notna(), "scheme"]):
+        yield Finding(
+            ADVICE, (f"Of {name}: ", Quote((ledger("compare", "note", scheme=name),)), ".")
+        )
 
 
 def _fairest(ledger: Ledger, name: str, best: str) -> Finding:
@@ -212,53 +239,9 @@ def markdown(found: list[Finding]) -> str:
 def shown(table: pd.DataFrame) -> list[str]:
     """The schemes to draw: the recommended one, then what people know, as far as they work."""
     pool = candidates(table)
-    names = [_best(pool)] if len(pool) else []
+    names = [best_of(pool)] if len(pool) else []
     names += [str(pool.iloc[0]["scheme"])] if len(pool) else []
     usable = set(table.loc[table["failure"].isna(), "scheme"])
     names += [name for name in FAMILIAR if name in usable]
     names += [str(name) for name in table.loc[table["failure"].isna(), "scheme"]]
     return list(dict.fromkeys(names))[:CURVES]
-
-
-def bars(table: pd.DataFrame) -> Figure:
-    """Torque over the least, a scheme a row, C2 filled, others hollow."""
-    rows = table[table["failure"].isna() & np.isfinite(table["torque_over_least"])]
-    rows = rows.sort_values("torque_over_least", ascending=False)
-    fig, panels = style.axes(style.COLUMN, 0.6 + 0.17 * max(len(rows), 3))
-    ax = panels[0, 0]
-    for height, (_, row) in enumerate(rows.iterrows()):
-        looks = style.scheme_style(str(row["scheme"])) | {"linestyle": ""}
-        face = {} if row["continuity"] >= 2 else {"markerfacecolor": "white"}
-        ax.plot(row["torque_over_least"], height, **(looks | face))
-    ax.set(xscale="log", xlabel="torque over the least", yticks=range(len(rows)))
-    ax.set_yticklabels(rows["scheme"])
-    return fig
-
-
-def rates(curves: Mapping[str, Curve], keyframes: Keyframes) -> Figure:
-    """Norms of angular velocity and acceleration over time of the curves that were measured, by name."""
-    fig, panels = style.axes(style.PAGE, 3.6, 2, 1, sharex=True)
-    t = _times(keyframes)
-    for name, curve in curves.items():
-        looks = style.scheme_style(name) | {"marker": ""}
-        for ax, rate in zip(panels[:, 0], shape_rates(curve, t), strict=True):
-            ax.plot(t - t[0], np.linalg.norm(rate, axis=-1), label=name, **looks)
-    for ax, label in zip(
-        panels[:, 0], (r"$|\omega|$ (rad/t)", r"$|\alpha|$ (rad/t$^2$)"), strict=True
-    ):
-        ax.set_ylabel(label)
-        if keyframes.count <= 60:
-            for knot in keyframes.knots:
-                ax.axvline(knot, color="#dddddd", lw=0.5, zorder=0)
-    panels[1, 0].set_xlabel("t since the first keyframe")
-    if curves:
-        style.legend_of(fig, panels[0, 0], CURVES)
-    return fig
-
-
-def _times(keyframes: Keyframes) -> FloatArray:
-    """Samples away from knots, where rates of some schemes jump."""
-    each = max(2, SAMPLES // len(keyframes.spacings))
-    u = (np.arange(each) + 0.5) / each
-    inner = keyframes.times[:-1, None] + keyframes.spacings[:, None] * u
-    return inner.reshape(-1)

@@ -73,6 +73,6 @@ def json_object(path: Path) -> dict[str, Any]:
 
 
 def write_json(path: Path, content: Mapping[str, Any]) -> None:
-    """Write a JSON file whole."""
-    with replacing(path, ASIDE) as aside:
+    """Write a JSON file whole, in place of a link rather than through it."""
+    with replacing(path, ASIDE, follow=False) as aside:
         aside.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")

@@ -45,6 +45,7 @@ EXPRESSIONS: dict[str, Callable[..., Any]] = {
     "rounded": three_digits,
     "rounded ratio": lambda above, below: three_digits(above / below),
     "reason": without_name,
+    "count": lambda *values: len(values),
     "least": lambda *values: min(values),
     "most": lambda *values: max(values),
 }

@@ -1,13 +1,11 @@
-"""The results directory: tables, figures, the manifest, and the journal of an interrupted run."""
+"""The results directory: tables, figures and the manifest."""
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from quatspline.report.manifest import MANIFEST, read_json, sha256, write_json
+from quatspline.report.manifest import MANIFEST, sha256
 from quatspline.report.provenance import now
 from quatspline.report.store import JOURNAL, Store
 
@@ -15,7 +13,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-__all__ = ["JOURNAL", "MANIFEST", "OUTPUTS", "PAGE", "Journal", "Results", "markdown", "now"]
+__all__ = ["JOURNAL", "MANIFEST", "OUTPUTS", "PAGE", "Results", "markdown", "now"]
 
 PAGE = "report.html"
 OUTPUTS = (".csv", ".md", ".png", ".svg", ".caption.txt", ".error.txt")
@@ -103,36 +101,6 @@ class Results(Store):
         """Enter what an experiment did, with the files that it has."""
         self.manifest["experiments"][name] = {**entry, "files": self.outputs(name)}
         self.refresh()
-
-
-class Journal:
-    """What an interrupted run had finished: valid for a run of the same fingerprint only."""
-
-    def __init__(self, results: Results, fingerprint: str) -> None:
-        self.results, self.path = results, results.folder / JOURNAL
-        found = read_json(self.path)
-        same = found.get("fingerprint") == fingerprint and found.pop("sum", None) == _sum(found)
-        fresh = {"fingerprint": fingerprint, "start": now(), "finished": {}}
-        self.content: dict[str, Any] = found if same else fresh
-
-    def finished(self, name: str) -> dict[str, Any] | None:
-        """The entry of an experiment that need not run again: its files are there, unchanged."""
-        entry = self.content["finished"].get(name)
-        return entry if entry and self.results.intact(entry["files"]) else None
-
-    def add(self, name: str, entry: Mapping[str, Any]) -> None:
-        """Note that an experiment has finished."""
-        self.content["finished"][name] = dict(entry)
-        write_json(self.path, self.content | {"sum": _sum(self.content)})
-
-    def close(self) -> None:
-        """The run is complete: forget."""
-        self.path.unlink(missing_ok=True)
-
-
-def _sum(content: Mapping[str, Any]) -> str:
-    """A checksum: an entry altered on the disk would enter the manifest."""
-    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
 def markdown(frame: pd.DataFrame, formats: Mapping[str, str] | None = None) -> str:

@@ -67,7 +67,8 @@ class Store:
         with sole_writer(self.folder):
             self._held = True
             self._load()  # as the writer before left it
-            clear_asides(self.folder)
+            if self.manifest:  # what looks like ours in somebody else's folder is not
+                clear_asides(self.folder)
             try:
                 yield
             finally:
@@ -88,7 +89,7 @@ class Store:
                     f"{given}: is read here, so it is not written over: name another --out"
                 )
         for path in paths:
-            if path.exists() and not path.is_file():
+            if path.exists() and not path.is_file():  # nor a link to one
                 raise ValueError(f"{path}: is no plain file, where one is to be written")
         foreign = [path for path in paths if not self.force and self._foreign(path.name)]
         if foreign:
@@ -105,21 +106,24 @@ class Store:
 
     def _foreign(self, name: str) -> bool:
         path = self.folder / name
-        if not path.exists():
+        if not os.path.lexists(path):  # a link that leads nowhere is somebody's, too
             return False
         if name == MANIFEST:
             return not read_manifest(self.folder)
         if name == JOURNAL:  # written too often to be listed; a run began by writing a manifest
-            return not self.manifest
+            return not self.manifest or path.is_symlink()
         return not self.owns(name)
 
     # -- writing --------------------------------------------------------------------------------
 
     @contextmanager
     def placing(self, name: str) -> Iterator[Path]:
-        """A path to write a file of the folder to, which gets its name when the block ends well."""
+        """A path to write a file of the folder to, which gets its name when the block ends well.
+
+        A link of that name is replaced: nothing is written outside the folder.
+        """
         path = self.folder / name
-        with replacing(path, ASIDE) as aside:
+        with replacing(path, ASIDE, follow=False) as aside:
             yield aside
             if not self.force and self._foreign(name):
                 raise ValueError(_left(path, aside))

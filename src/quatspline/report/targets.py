@@ -13,11 +13,12 @@ from typing import Any
 
 import pandas as pd
 
+from quatspline.experiment import QUICK
+from quatspline.instruments.claims import UNDECIDED
 from quatspline.report.quotes import Ledger, Reader
 
 ROTATION_SPLINE = "scipy-rotation-spline"
 SHORT = "falls short"
-UNDECIDED = "not decided at this size"
 CLEAR = 2.0
 """The factor by which a bound has to be kept at quick size to count as met: rounds are short there."""
 
@@ -183,7 +184,7 @@ def _verdict(target: Target, read: Reader) -> Verdict:
 
 def _quick(table: pd.DataFrame) -> bool:
     """Whether a table of speed was measured at quick size; tables by hand say nothing of that."""
-    return "run_size" in table and bool(table["run_size"].eq("quick").any())
+    return "run_size" in table and bool(table["run_size"].eq(QUICK).any())
 
 
 def markdown(read: Reader) -> str:
@@ -210,7 +211,7 @@ def measured_on(run: Mapping[str, Any]) -> str:
     machine = f"{cpu['model']}, {cpu['cores']} cores" if cpu else "a machine that no manifest names"
     parts = [machine, *(f"{shown} {known[key]}" for key, shown in SOFTWARE.items() if key in known)]
     parts += [run["end"][:10]] if run.get("end") else []
-    quick = run.get("sizes", {}).get("speed") == "quick"
+    quick = run.get("sizes", {}).get("speed") == QUICK
     short = (
         " At quick size: fewer tasks and shorter rounds than the targets ask for. A bound counts as met there that is "
         f"kept by a factor of {CLEAR:g}; others are not decided."

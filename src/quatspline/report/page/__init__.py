@@ -12,6 +12,7 @@ from quatspline.report.page.folder import Folder, existing
 from quatspline.report.page.motion import Scene, own_scene, paper_scenes
 from quatspline.report.page.sections import SECTIONS, Section
 from quatspline.report.results import PAGE, Results
+from quatspline.stdout import say
 
 __all__ = ["PAGE", "Scene", "Section", "command", "own_scene", "paper_scenes", "write_page"]
 
@@ -27,7 +28,7 @@ def command(results_folder: str | Path, *, open_it: bool = False, force: bool = 
         The folder is not there, holds no table, is being written or has a page that is not its own.
     """
     path = write_page(results_folder, force=force)
-    print(path)
+    say([str(path)])
     if open_it:
         webbrowser.open(path.resolve().as_uri())
     return 0

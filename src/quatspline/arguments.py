@@ -1,0 +1,122 @@
+"""The arguments of the command line: which there are, and what is said of bad ones."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, Literal, NoReturn
+
+from quatspline import __version__
+
+REFUSED = 2
+"""The status of bad usage and bad input."""
+
+
+class _Parser(argparse.ArgumentParser):
+    """Tells bad usage in one line."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(REFUSED, f"{self.prog}: {message} (see {self.prog} --help)\n")
+
+
+def parser() -> argparse.ArgumentParser:
+    """The parser of all commands; ``name`` is the command's."""
+    whole = _Parser(prog="quatspline", description="The benchmark of orientation interpolation.")
+    whole.add_argument("--version", action="version", version=f"quatspline {__version__}")
+    commands = whole.add_subparsers(metavar="COMMAND", required=True, dest="name")
+    commands.add_parser("list", help="schemes and what they claim")
+    _add_run(commands)
+    _add_compare(commands)
+    _add_sample(commands)
+    _add_report(commands)
+    return whole
+
+
+def _add_run(commands: Any) -> None:
+    run = commands.add_parser(
+        "run",
+        help="experiments: tables, figures and a manifest",
+        description="Run experiments: by default all, the paper's in full and the others at quick "
+        "size. A run that was interrupted goes on where it stopped when started alike.",
+    )
+    run.add_argument("experiments", nargs="*", metavar="EXPERIMENT", help="by default all")
+    _add_schemes(run)
+    size = run.add_mutually_exclusive_group()
+    size.add_argument("--quick", dest="size", action="store_const", const="quick")
+    size.add_argument("--full", dest="size", action="store_const", const="full")
+    run.add_argument("--out", type=Path, default=Path("results"), metavar="DIR", help="%(default)s")
+    _add_force(run)
+    run.add_argument("--seed", type=_seed, default=0, metavar="N", help="%(default)s")
+    where = run.add_mutually_exclusive_group()
+    where.add_argument("--jobs", type=_count, metavar="N", help="processes; by default one a core")
+    where.add_argument("--dask", metavar="ADDRESS", help="a Dask scheduler that measures instead")
+
+
+def _add_compare(commands: Any) -> None:
+    compare = commands.add_parser("compare", help="schemes on your own keyframes")
+    _add_keyframes(compare, nargs="?")  # it may stand behind the words of --schemes
+    _add_schemes(compare)
+    where = "for tables, figures and the page; by default KEYFRAMES-compared here"
+    compare.add_argument("--out", type=Path, metavar="DIR", help=where)
+    _add_force(compare)
+
+
+def _add_sample(commands: Any) -> None:
+    sample = commands.add_parser("sample", help="a scheme's curve through keyframes, sampled")
+    _add_keyframes(sample)
+    sample.add_argument("--scheme", required=True, metavar="S", help="see quatspline list")
+    grid = sample.add_mutually_exclusive_group(required=True)
+    grid.add_argument("--rate", type=_rate, metavar="HZ", help="samples per time unit")
+    grid.add_argument(
+        "--count", type=_count, metavar="N", help="samples in all, both ends included"
+    )
+    sample.add_argument(
+        "-o", type=Path, dest="file", metavar="FILE", help="by default CSV on stdout"
+    )
+
+
+def _add_report(commands: Any) -> None:
+    report = commands.add_parser("report", help="the page that shows the results")
+    report.add_argument(
+        "--out", type=Path, default=Path("results"), metavar="DIR", help="%(default)s"
+    )
+    _add_force(report)
+    report.add_argument("--open", action="store_true", help="in the browser")
+
+
+def _add_keyframes(parser: argparse.ArgumentParser, nargs: Literal["?"] | None = None) -> None:
+    kinds = (
+        "CSV (t,qw,qx,qy,qz, or columns named in a header), TUM (t tx ty tz qx qy qz qw) or NPZ "
+        "(times, quaternions, positions)"
+    )
+    parser.add_argument("keyframes", metavar="KEYFRAMES", help=kinds, nargs=nargs)
+    closing = "a closed curve: the last row repeats the first orientation, or times are uniform"
+    parser.add_argument("--closed", action="store_true", help=closing)
+
+
+def _add_schemes(parser: argparse.ArgumentParser) -> None:
+    names = "names, by blanks or commas"
+    parser.add_argument("--schemes", nargs="+", metavar="S", action="append", help=names)
+
+
+def _add_force(parser: argparse.ArgumentParser) -> None:
+    replaced = "replace files that quatspline did not write, or that were edited since"
+    parser.add_argument("--force", action="store_true", help=replaced)
+
+
+def _number(kind: type, accepts: Callable[[Any], bool], wanted: str) -> Callable[[str], Any]:
+    def parsed(text: str) -> Any:
+        with suppress(ValueError):
+            if accepts(value := kind(text)):
+                return value
+        raise argparse.ArgumentTypeError(f"{text!r}: {wanted} is expected")
+
+    return parsed
+
+
+_rate = _number(float, lambda value: 0.0 < value < math.inf, "a positive number")
+_count = _number(int, lambda value: value >= 1, "a whole number, at least 1,")
+_seed = _number(int, lambda value: value >= 0, "a whole number, at least 0,")
