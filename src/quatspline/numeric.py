@@ -19,6 +19,12 @@ POINTS = 9
 STEP = 6e-3
 """Stencil step as a share of the segment: truncation (h^7 one-sided) and the rounding of second
 differences (1e-16/h^2) both stay near 1e-10 of the segment's own scale."""
+TURN = 0.1
+"""... and a step turns by no more than this in rad: the chart folds where eight of them reach half a turn."""
+PROBE = 2.0**-20
+"""Share of the segment over which the speed is read that shortens a step: told apart up to a million turns."""
+TICKS = 16
+"""Ulps of time that this distance has at least."""
 
 
 @cache
@@ -40,7 +46,7 @@ def rates(
     """Body angular velocity and acceleration (m, 3) at t (m,) of a curve smooth between knots."""
     segment = np.clip(np.searchsorted(knots, t, side="right") - 1, 0, len(knots) - 2)
     lo, hi = knots[segment], knots[segment + 1]
-    step = STEP * (hi - lo)
+    step = np.minimum(STEP * (hi - lo), TURN / _speed(orientation, t, lo, hi))
     reach = POINTS // 2
     below = np.maximum(reach - np.floor((t - lo) / step), 0.0)
     above = np.maximum(reach - np.floor((hi - t) / step), 0.0)
@@ -54,3 +60,13 @@ def rates(
     velocity = 2.0 * np.einsum("mj,mji->mi", first[shift + reach], x) / step[:, None]
     acceleration = 2.0 * np.einsum("mj,mji->mi", second[shift + reach], x) / step[:, None] ** 2
     return velocity, acceleration
+
+
+def _speed(
+    orientation: Callable[[FloatArray], FloatArray], t: FloatArray, lo: FloatArray, hi: FloatArray
+) -> FloatArray:
+    """Angular speed (m,) at t (m,) in segments [lo, hi], roughly, and never 0."""
+    apart = np.maximum(PROBE * (hi - lo), TICKS * np.spacing(hi))
+    other = np.where(t - lo > hi - t, t - apart, t + apart)
+    q = orientation(np.concatenate([t, other])).reshape(2, len(t), 4)
+    return np.maximum(quaternion.distance(q[0], q[1]) / np.abs(other - t), np.finfo(float).tiny)

@@ -31,15 +31,18 @@ ROUNDING = 1e-8
 UNSOLVED = 30.0
 """... and what a solve leaves: its residual times this, over the shortest spacing to the order (the third
 derivatives of cubic blending functions are 6 to 18) ..."""
-STENCIL = (1e-12, 1e-7, 1e-6, 1e-3)
-"""... and jumps of stencils on orientations below these, an entry an order, over the shortest spacing to
-that order: ten to a hundred times the rounding that smooth segments were seen to leave."""
+STENCIL = (1e-7, 1e-7, 1e-6, 1e-3)
+"""... and jumps of libraries' orientations and of stencils on these below these, an entry an order, over the
+shortest spacing to that order: ten to a hundred times the rounding that smooth segments were seen to leave.
+Orientations themselves are off by 1e-8 where a library takes arc cosines, or so small a turn for none."""
 NOISE = (1e-14, 1e-13, 1e-12, 1e-9)
 """Closed forms leave this much rounding, an entry an order, over the spacing beside the knot to that order: all
 that is left of curves at rest or at a constant rate, whose own size says nothing."""
-TICKS = (16.0, 1e4, 1e6, 1e9)
+TICKS = (32.0, 1e2, 1e3, 1e6)
 """An ulp of time leaves so many times what the curve turns in it, an entry an order, over the shortest spacing to
-that order: the weights of the limits' extrapolation and, of higher orders, of the stencils."""
+that order: the limits are extrapolated with weights of 30 in all, jumps of a slope over a thousandth of it ..."""
+STENCIL_TICKS = (32.0, 1e5, 1e8, 1e10)
+"""... and stencils have weights of up to 80 and 360 in all at an end, over steps of 6e-3 to the order."""
 FALLING = 0.05
 """So do those that fall to this share when the step falls to a tenth."""
 
@@ -139,8 +142,9 @@ def _floor(curve: Curve, order: int, size: float, speed: float) -> float:
     """What a jump of this order has to exceed to be told from rounding, of orientations and of time."""
     knots = curve.keyframes.knots
     scale = float(np.diff(knots).min()) ** -order
-    tick = TICKS[order] * float(np.spacing(knots[-1])) * speed * scale
+    tick = float(np.spacing(knots[-1])) * speed * scale
     if not closed_forms(curve):
-        return STENCIL[order] * scale + tick
+        return STENCIL[order] * scale + STENCIL_TICKS[order] * tick
     report = curve.solve_report
-    return ROUNDING * size + tick + (UNSOLVED * float(report.residual) * scale if report else 0.0)
+    solved = UNSOLVED * float(report.residual) * scale if report else 0.0
+    return ROUNDING * size + TICKS[order] * tick + solved
