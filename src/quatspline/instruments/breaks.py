@@ -16,7 +16,7 @@ import numpy as np
 
 from quatspline import quaternion
 from quatspline.curve import Curve
-from quatspline.quaternion import FloatArray, IntArray
+from quatspline.quaternion import BoolArray, FloatArray, IntArray
 
 WINDOWS = 7
 """Windows of a segment, each overlapping the next by half."""
@@ -58,14 +58,17 @@ def breaks(curve: Curve) -> Breaks:
     picked = _suspects(_corner(nodes, q) * h)
     h = h[picked]
     nodes, q = _halved(curve, nodes[picked], q[picked])
-    leaps, _ = _staying(_turn(q))
-    leaps[leaps <= LEAP] = 0.0
-    corners, level = _staying(_corner(nodes, q))
-    found = (corners > CORNER / h) & (leaps == 0.0)
-    at = level[found], np.flatnonzero(found)
-    across = _across(curve, nodes[at], q[at])
-    largest = (float(np.max(x, initial=0.0)) for x in (leaps, across, across * h[found]))
-    return Breaks(*largest)
+    turns = _turn(q)
+    leaping, _ = _staying(turns, LEAP)
+    leaps = turns[np.isfinite(turns).sum(axis=0) - 1, np.arange(len(h))][
+        leaping
+    ]  # of the narrowest windows
+    breaking, level = _staying(_corner(nodes, q), CORNER / h)
+    breaking &= ~leaping
+    at = level[breaking], np.flatnonzero(breaking)
+    corners = _across(curve, nodes[at], q[at])
+    found = leaps, corners, corners * h[breaking]
+    return Breaks(*(float(np.max(sizes, initial=0.0)) for sizes in found))
 
 
 def _windows(curve: Curve) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -118,23 +121,23 @@ def _quartered(curve: Curve, nodes: FloatArray, q: FloatArray) -> tuple[FloatArr
     return t, np.concatenate([q, _orientations(curve, quarters)], axis=1)[:, order]
 
 
-def _staying(values: FloatArray) -> tuple[FloatArray, IntArray]:
-    """What of values (levels, w) stays put, (w,), 0 where nothing does, and a level (w,) at which it does.
+def _staying(values: FloatArray, floor: FloatArray | float) -> tuple[BoolArray, IntArray]:
+    """Which of values (levels, w) stay put above a floor, (w,), and a level (w,) at which they do.
 
-    Values of a smooth curve fall and then grow with rounding.  So the level sought is the first from which on
-    the least value has RUN others within ALIKE of it; the level told is the middle of these, where neither what
-    still falls nor what already grows counts for much.
+    Values of a smooth curve fall and then grow with rounding.  So a level is sought from which on the least
+    value has RUN others within ALIKE of it; the level told is the middle of these, where neither what still
+    falls nor what already grows counts for much.
     """
-    least, level = np.zeros(values.shape[1]), np.zeros(values.shape[1], dtype=int)
+    values = np.where(np.isnan(values), np.inf, values)
+    stays, level = np.zeros(values.shape[1], dtype=bool), np.zeros(values.shape[1], dtype=int)
     for start in reversed(range(max(len(values) - RUN, 0))):
-        rest = np.where(np.isnan(values[start:]), np.inf, values[start:])
-        low = rest.min(axis=0)
-        alike = (rest <= ALIKE * low) & (low < np.inf)
-        stays = alike.sum(axis=0) > RUN
+        least = values[start:].min(axis=0)
+        alike = (values[start:] <= ALIKE * least) & (least > floor) & (least < np.inf)
         ranked = np.cumsum(alike, axis=0)
-        middle = start + np.argmax(2 * ranked >= ranked[-1], axis=0)
-        least, level = np.where(stays, low, least), np.where(stays, middle, level)
-    return least, level
+        run = ranked[-1] > RUN
+        level = np.where(run, start + np.argmax(2 * ranked >= ranked[-1], axis=0), level)
+        stays |= run
+    return stays, level
 
 
 def _across(curve: Curve, nodes: FloatArray, q: FloatArray) -> FloatArray:

@@ -60,7 +60,8 @@ def one_sided(
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Limits at knots ``at`` (m,) from one side (+1 or -1): q (m, 4), then three derivatives (m, 3).
 
-    Knots are times since the first keyframe; beyond a closed curve's seam its first segment goes on.  Values at 1 to 4 steps (m,) away are extrapolated; the last is the slope of the acceleration.
+    Knots are times since the first keyframe; beyond a closed curve's seam its first segment goes on.
+    Values at 1 to 4 steps (m,) away are extrapolated; the last is the slope of the acceleration.
     """
     nodes = at[:, None] + side * step[:, None] * np.arange(1.0, ONE_SIDED + 1)
     t, period = nodes.reshape(-1), curve.keyframes.knots[-1]
