@@ -273,3 +273,13 @@ def test_stencils_of_a_curve_at_rest_are_zero():
     rest = planted([0.0, 1.0], speed=0.0, peer="numpy")
     for rate in rates_since(rest, np.linspace(0.0, 1.0, 5)):
         np.testing.assert_array_equal(rate, 0.0)
+
+
+def test_stencils_stay_short_where_a_fast_curve_turns_back():
+    """At t = 0.5 its speed is 0, and eight steps of a fixed share on it turns by several radians."""
+    bend = 4e3
+    measured = rates_since(
+        planted([0.0, 1.0], speed=-0.5 * bend, bend=bend, peer="numpy"), np.array([0.0, 0.5, 0.9])
+    )
+    np.testing.assert_allclose(measured[0] @ AXIS, bend * np.array([-0.5, 0.0, 0.4]), atol=1e-5)
+    np.testing.assert_allclose(measured[1] @ AXIS, bend, rtol=1e-4)
