@@ -13,12 +13,19 @@ from functools import cache
 import numpy as np
 
 from quatspline import quaternion
-from quatspline.quaternion import FloatArray
+from quatspline.quaternion import FloatArray, IntArray
 
 POINTS = 9
 STEP = 6e-3
 """Stencil step as a share of the segment: truncation (h^7 one-sided) and the rounding of second
 differences (1e-16/h^2) both stay near 1e-10 of the segment's own scale."""
+TURN = 0.1
+"""... and a step turns by no more than this in rad: the chart folds where eight of them reach half a turn."""
+PROBE, PROBES = 2.0**-20, 8
+"""Share of the segment over which the speed is read that shortens its steps, told apart up to a million turns, and
+at how many places: a turning point's own speed is 0, where a few steps on it is not."""
+TICKS = 16
+"""Ulps of time that this distance has at least."""
 
 
 @cache
@@ -40,7 +47,7 @@ def rates(
     """Body angular velocity and acceleration (m, 3) at t (m,) of a curve smooth between knots."""
     segment = np.clip(np.searchsorted(knots, t, side="right") - 1, 0, len(knots) - 2)
     lo, hi = knots[segment], knots[segment + 1]
-    step = STEP * (hi - lo)
+    step = np.minimum(STEP * (hi - lo), TURN / _speed(orientation, segment, knots))
     reach = POINTS // 2
     below = np.maximum(reach - np.floor((t - lo) / step), 0.0)
     above = np.maximum(reach - np.floor((hi - t) / step), 0.0)
@@ -54,3 +61,21 @@ def rates(
     velocity = 2.0 * np.einsum("mj,mji->mi", first[shift + reach], x) / step[:, None]
     acceleration = 2.0 * np.einsum("mj,mji->mi", second[shift + reach], x) / step[:, None] ** 2
     return velocity, acceleration
+
+
+def _speed(
+    orientation: Callable[[FloatArray], FloatArray], segment: IntArray, knots: FloatArray
+) -> FloatArray:
+    """The largest angular speed (m,) in the segments (m,) of samples, roughly, and never 0."""
+    used, of = np.unique(segment, return_inverse=True)
+    lo, hi = knots[used], knots[used + 1]
+    apart = np.maximum(PROBE * (hi - lo), TICKS * np.spacing(hi))[:, None]
+    t = lo[:, None] + (hi - lo)[:, None] * np.linspace(0.0, 1.0, PROBES)
+    other = np.where(np.arange(PROBES) < PROBES // 2, t + apart, t - apart)
+    t[:, -1], other[:, -1] = (
+        np.nextafter(hi, lo),
+        hi - apart[:, 0],
+    )  # of this segment, not of the next
+    q = orientation(np.concatenate([t, other], axis=None)).reshape(2, *t.shape, 4)
+    speeds = quaternion.distance(q[0], q[1]) / np.abs(other - t)
+    return np.asarray(np.maximum(speeds.max(axis=1), np.finfo(float).tiny)[of], dtype=float)

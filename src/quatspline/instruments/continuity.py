@@ -17,7 +17,7 @@ import pandas as pd
 
 from quatspline.curve import Curve
 from quatspline.instruments.breaks import UNBROKEN, breaks
-from quatspline.instruments.derivatives import closed_forms, one_sided, shape_rates
+from quatspline.instruments.derivatives import closed_forms, one_sided, rates_since
 from quatspline.instruments.trials import Row
 from quatspline.quaternion import FloatArray
 
@@ -31,12 +31,18 @@ ROUNDING = 1e-8
 UNSOLVED = 30.0
 """... and what a solve leaves: its residual times this, over the shortest spacing to the order (the third
 derivatives of cubic blending functions are 6 to 18) ..."""
-STENCIL = (1e-12, 1e-7, 1e-6, 1e-3)
-"""... and jumps of stencils on orientations below these, an entry an order, over the shortest spacing to
-that order: ten to a hundred times the rounding that smooth segments were seen to leave."""
+STENCIL = (1e-7, 1e-7, 1e-6, 1e-3)
+"""... and jumps of libraries' orientations and of stencils on these below these, an entry an order, over the
+shortest spacing to that order: ten to a hundred times the rounding that smooth segments were seen to leave.
+Orientations themselves are off by 1e-8 where a library takes arc cosines, or so small a turn for none."""
 NOISE = (1e-14, 1e-13, 1e-12, 1e-9)
 """Closed forms leave this much rounding, an entry an order, over the spacing beside the knot to that order: all
 that is left of curves at rest or at a constant rate, whose own size says nothing."""
+TICKS = (32.0, 1e2, 1e3, 1e6)
+"""An ulp of time leaves so many times what the curve turns in it, an entry an order, over the shortest spacing to
+that order: the limits are extrapolated with weights of 30 in all, jumps of a slope over a thousandth of it ..."""
+STENCIL_TICKS = (32.0, 1e5, 1e8, 1e10)
+"""... and stencils have weights of up to 80 and 360 in all at an end, over steps of 6e-3 to the order."""
 FALLING = 0.05
 """So do those that fall to this share when the step falls to a tenth."""
 
@@ -53,7 +59,7 @@ def jumps(curve: Curve, orders: Sequence[int] = (0, 1, 2, 3)) -> pd.DataFrame:
     Columns: order (0 to 3), quantity, unit, jump (largest over the knots, in its unit, for orders 0, as an
     angle, and 1 also inside segments; lower is smoother), coarse_jump (with the tenfold step), size (largest
     on the curve), relative (0 where the size itself is rounding), and continuous (a verdict).
-    Derivatives are those of `shape_rates`.
+    Derivatives are those of `rates_since`.
     """
     at, step = _inner_knots(curve)
     gaps = [_jumps(curve, at, share * step) for share in STEPS]
@@ -63,7 +69,7 @@ def jumps(curve: Curve, orders: Sequence[int] = (0, 1, 2, 3)) -> pd.DataFrame:
     for order in orders:
         coarse, fine = (float(np.max(found[order], initial=broken[order])) for found in gaps)
         size = sizes[order]
-        floor = _floor(curve, order, size)
+        floor = _floor(curve, order, size, sizes[1])
         scaled = inside.scaled if order else inside.leap
         local = float(np.max(gaps[1][order] * step**order, initial=scaled if order < 2 else 0.0))
         smooth = fine <= floor or fine <= FALLING * coarse or local <= rounding(curve, order)
@@ -88,9 +94,9 @@ def speeds(curve: Curve) -> Row:
     """
     at, _ = _inner_knots(curve)
     dense = _dense(curve)
-    speed, at_keys = (np.linalg.norm(shape_rates(curve, t)[0], axis=-1) for t in (dense, at))
+    speed, at_keys = (np.linalg.norm(rates_since(curve, t)[0], axis=-1) for t in (dense, at))
     mean = float(speed.mean())
-    if mean * float(curve.times[-1] - curve.times[0]) <= AT_REST:
+    if mean * float(curve.keyframes.knots[-1]) <= AT_REST:
         return {"least_key_speed": np.nan, "peak_speed": np.nan}
     least = float(at_keys.min()) / mean if at.size else np.nan
     return {"least_key_speed": least, "peak_speed": float(speed.max()) / mean}
@@ -98,17 +104,17 @@ def speeds(curve: Curve) -> Row:
 
 def _inner_knots(curve: Curve) -> tuple[FloatArray, FloatArray]:
     """Knots with a segment on either side (a closed curve's seam too), and the shorter spacing."""
-    times = curve.times
-    h = np.diff(times)
+    knots = curve.keyframes.knots
+    h = np.diff(knots)
     if curve.closed:
-        return times[1:], np.minimum(h, np.roll(h, -1))
-    return times[1:-1], np.minimum(h[:-1], h[1:])
+        return knots[1:], np.minimum(h, np.roll(h, -1))
+    return knots[1:-1], np.minimum(h[:-1], h[1:])
 
 
 def _dense(curve: Curve) -> FloatArray:
-    times = curve.times
+    knots = curve.keyframes.knots
     u = (np.arange(DENSE) + 0.5) / DENSE
-    return (times[:-1, None] + np.diff(times)[:, None] * u).reshape(-1)
+    return (knots[:-1, None] + np.diff(knots)[:, None] * u).reshape(-1)
 
 
 def _jumps(curve: Curve, at: FloatArray, step: FloatArray) -> list[FloatArray]:
@@ -121,8 +127,8 @@ def _jumps(curve: Curve, at: FloatArray, step: FloatArray) -> list[FloatArray]:
 
 def _sizes(curve: Curve) -> list[float]:
     """Largest sizes of q, of both rates and of the acceleration's slope between samples."""
-    omega, alpha = shape_rates(curve, _dense(curve))
-    apart = np.diff(curve.times)[:, None, None] / DENSE
+    omega, alpha = rates_since(curve, _dense(curve))
+    apart = np.diff(curve.keyframes.knots)[:, None, None] / DENSE
     slope = np.diff(alpha.reshape(-1, DENSE, 3), axis=1) / apart
     return [1.0, *(float(np.linalg.norm(x, axis=-1).max()) for x in (omega, alpha, slope))]
 
@@ -132,10 +138,13 @@ def rounding(curve: Curve, order: int) -> float:
     return (NOISE if closed_forms(curve) else STENCIL)[order]
 
 
-def _floor(curve: Curve, order: int, size: float) -> float:
-    """What a jump of this order has to exceed to be told from rounding."""
-    scale = float(np.diff(curve.times).min()) ** -order
+def _floor(curve: Curve, order: int, size: float, speed: float) -> float:
+    """What a jump of this order has to exceed to be told from rounding, of orientations and of time."""
+    knots = curve.keyframes.knots
+    scale = float(np.diff(knots).min()) ** -order
+    tick = float(np.spacing(knots[-1])) * speed * scale
     if not closed_forms(curve):
-        return STENCIL[order] * scale
+        return STENCIL[order] * scale + STENCIL_TICKS[order] * tick
     report = curve.solve_report
-    return ROUNDING * size + (UNSOLVED * float(report.residual) * scale if report else 0.0)
+    solved = UNSOLVED * float(report.residual) * scale if report else 0.0
+    return ROUNDING * size + TICKS[order] * tick + solved

@@ -60,12 +60,14 @@ def one_sided(
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Limits at knots ``at`` (m,) from one side (+1 or -1): q (m, 4), then three derivatives (m, 3).
 
+    Knots are times since the first keyframe; beyond a closed curve's seam its first segment goes on.
     Values at 1 to 4 steps (m,) away are extrapolated; the last is the slope of the acceleration.
     """
     nodes = at[:, None] + side * step[:, None] * np.arange(1.0, ONE_SIDED + 1)
-    t = nodes.reshape(-1)
+    t, period = nodes.reshape(-1), curve.keyframes.knots[-1]
+    rates = rates_since(curve, np.where(t > period, t - period, t))
     q, omega, alpha = (
-        values.reshape(*nodes.shape, -1) for values in (curve(t), *shape_rates(curve, t))
+        values.reshape(*nodes.shape, -1) for values in (curve.inner(t)[:, 0], *rates)
     )
     limits = [np.einsum("j,mji->mi", _LIMIT, values) for values in (q, omega, alpha)]
     slope = np.einsum("j,mji->mi", _SLOPE, alpha) / (side * step[:, None])
