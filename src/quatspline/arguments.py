@@ -73,9 +73,7 @@ def _add_sample(commands: Any) -> None:
     grid.add_argument(
         "--count", type=_count, metavar="N", help="samples in all, both ends included"
     )
-    sample.add_argument(
-        "-o", type=Path, dest="file", metavar="FILE", help="by default CSV on stdout"
-    )
+    sample.add_argument("-o", dest="file", metavar="FILE", help="by default CSV on stdout")
 
 
 def _add_report(commands: Any) -> None:
