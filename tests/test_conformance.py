@@ -485,7 +485,7 @@ def test_fewest_keyframes(scheme: Scheme) -> None:
         assert apart(curve(curve.times), curve.quaternions) < HIT
     fewer = walk(n, 50.0)[: n - 1]
     for build in builders(scheme):
-        with pytest.raises(ValueError, match=rf"^quaternions has {n - 1} keyframes.*{n}"):
+        with pytest.raises(ValueError, match=rf"^quaternions has {n - 1} keyframes?.*{n}"):
             build(None, fewer)
 
 

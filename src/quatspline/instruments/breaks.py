@@ -32,6 +32,8 @@ RUN, ALIKE = 10, 3.0
 """What stays put does so to this factor over so many halvings, from its least on.  A corner seen by chords comes
 out between its half and its whole.  Between falling with the window and growing with rounding, a smooth curve
 stays within the factor for six halvings at most; rounding itself, of arc cosines say, doubles with each."""
+STRAYS = 0.2
+"""Share of windows around a leap whose turn may be smaller: at a leap itself a curve may take any value."""
 CORNER = 1e-7
 """A break of the velocity is told above this share of a turn by 1 rad a spacing, ..."""
 LEAP = 1e-6
@@ -59,7 +61,7 @@ def breaks(curve: Curve) -> Breaks:
     h = h[picked]
     nodes, q = _halved(curve, nodes[picked], q[picked])
     turns = _turn(q)
-    leaping, _ = _staying(turns, LEAP)
+    leaping, _ = _staying(turns, LEAP, strays=STRAYS)
     leaps = turns[np.isfinite(turns).sum(axis=0) - 1, np.arange(len(h))][
         leaping
     ]  # of the narrowest windows
@@ -121,18 +123,22 @@ def _quartered(curve: Curve, nodes: FloatArray, q: FloatArray) -> tuple[FloatArr
     return t, np.concatenate([q, _orientations(curve, quarters)], axis=1)[:, order]
 
 
-def _staying(values: FloatArray, floor: FloatArray | float) -> tuple[BoolArray, IntArray]:
+def _staying(
+    values: FloatArray, floor: FloatArray | float, strays: float = 0.0
+) -> tuple[BoolArray, IntArray]:
     """Which of values (levels, w) stay put above a floor, (w,), and a level (w,) at which they do.
 
     Values of a smooth curve fall and then grow with rounding.  So a level is sought from which on the least
-    value has RUN others within ALIKE of it; the level told is the middle of these, where neither what still
-    falls nor what already grows counts for much.
+    value, but for a share of strays, has RUN others within ALIKE of it; the level told is the middle of
+    these, where neither what still falls nor what already grows counts for much.
     """
     values = np.where(np.isnan(values), np.inf, values)
     stays, level = np.zeros(values.shape[1], dtype=bool), np.zeros(values.shape[1], dtype=int)
     for start in reversed(range(max(len(values) - RUN, 0))):
-        least = values[start:].min(axis=0)
-        alike = (values[start:] <= ALIKE * least) & (least > floor) & (least < np.inf)
+        tail = values[start:]
+        few = (strays * np.isfinite(tail).sum(axis=0)).astype(int)
+        least = np.sort(tail, axis=0)[few, np.arange(tail.shape[1])]
+        alike = (tail >= least) & (tail <= ALIKE * least) & (least > floor) & (least < np.inf)
         ranked = np.cumsum(alike, axis=0)
         run = ranked[-1] > RUN
         level = np.where(run, start + np.argmax(2 * ranked >= ranked[-1], axis=0), level)
