@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 
 from quatspline._jit import REACH, fit_kernel
-from quatspline.families.cumulative import CUMULATIVE, set_base, set_factor
+from quatspline.families.cumulative import UNBOUNDED, set_base, set_factor
 from quatspline.families.segments import SegmentCurve
 from quatspline.families.tangents import CHART, SECANT, chart_velocities, keyframe
 from quatspline.keyframes import Keyframes
@@ -42,7 +42,7 @@ class Hermite(SegmentCurve):
     order = 3
     support = 4
     constant_rate = "everywhere"
-    family = CUMULATIVE
+    family = UNBOUNDED
     operations = {"exps per sample": 3, "logs per keyframe": 5, "exps per keyframe": 2}
 
     def _fit(

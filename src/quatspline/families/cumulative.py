@@ -229,21 +229,21 @@ def _acceleration(near: bool, small: bool = False) -> Kernel:
     return sample_kernel(kernel)
 
 
+_NEAR = (_orientation(True), _velocity(True), _acceleration(True))
 _RATES = (_velocity(False), _acceleration(False))
+_ANYWHERE = (_orientation(False, anywhere=True), *_RATES)
 
-CUMULATIVE = Family(
-    SIZE,
-    near=(_orientation(True), _velocity(True), _acceleration(True)),
-    far=(_orientation(False), *_RATES),
-)
+CUMULATIVE = Family(SIZE, near=_NEAR, far=(_orientation(False), *_RATES))
 """Evaluates (1) and its rates."""
+
+UNBOUNDED = Family(SIZE, near=_NEAR, far=_ANYWHERE)
+"""The same where, beside spacings of extreme ratio, angles may be of any size."""
 
 MIDDLE = Family(
     SIZE,
     near=(_orientation(True, True), _velocity(True, True), _acceleration(True, True)),
-    far=(_orientation(False, anywhere=True), *_RATES),
+    far=_ANYWHERE,
 )
-"""The same where the outer factors are small: a fit kernel counts their angles SIDE times.  Far from that,
-beside spacings of extreme ratio, angles may be of any size."""
+"""That where the outer factors are small: a fit kernel counts their angles SIDE times."""
 
 SIDE = NEAR / SMALL
