@@ -21,7 +21,7 @@ $(VENV)/run: pyproject.toml requirements.lock
 	@echo "installing into $(VENV) ..."
 	@$(PIP) --editable .
 	@$(PIP) --editable '.[peers]' || echo "some third-party schemes could not be installed: their rows will read n/a"
-	@$(BIN)/python -m quatspline.warmup
+	@$(BIN)/python -m quatspline.runs.warmup
 	@touch $@
 
 $(VENV)/test: $(VENV)/run
@@ -58,13 +58,13 @@ format: $(VENV)/test ## Format the sources
 	@$(BIN)/ruff check --quiet --fix . ; $(BIN)/ruff format --quiet .
 
 new-baseline: $(VENV)/run ## Write a working template: NAME=my_scheme
-	@$(BIN)/python -m quatspline.scaffold '$(NAME)'
+	@$(BIN)/python -m tools.new_scheme '$(NAME)'
 
 check-baseline: $(VENV)/test ## Conformance and claims of one scheme: NAME=my_scheme
 	@$(BIN)/python -m pytest -q tests/test_conformance.py tests/test_claims.py --scheme '$(NAME)'
 
 reference: $(VENV)/run ## Take the tables of the last run as the reference and quote them in the README
-	@$(BIN)/python -m quatspline.report.readme --adopt results
+	@$(BIN)/python -m tools.readme --adopt results
 
 lock: ## Renew requirements.lock from the newest releases
 	@rm -rf $(VENV)-lock && $(PYTHON) -m venv $(VENV)-lock

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from quatspline._jit import REACH, fit_kernel
 from quatspline.families.arcs import SIZE as ARC
 from quatspline.families.arcs import set_arc
 from quatspline.families.nested import TRIANGLE, restored, set_parameter
-from quatspline.families.segments import SegmentCurve
-from quatspline.families.tangents import keyframe
+from quatspline.fitting.tangents import keyframe
+from quatspline.kernels.jit import REACH, fit_kernel
+from quatspline.kernels.scalars import slerp
 from quatspline.keyframes import Keyframes
-from quatspline.primitives import slerp
+from quatspline.segments import SegmentCurve
 
 
 class BarryGoldman(SegmentCurve):

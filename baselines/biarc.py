@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 
-from quatspline._jit import compiled, fit_kernel
 from quatspline.families.circles import BIARC, SPLIT, combine, dot, set_circle, unit
-from quatspline.families.segments import SegmentCurve
-from quatspline.families.tangents import CHART, chart_velocities, keyframe, step
+from quatspline.fitting.tangents import CHART, chart_velocities, keyframe, step
+from quatspline.kernels.jit import compiled, fit_kernel
+from quatspline.kernels.scalars import mul
 from quatspline.keyframes import Keyframes
-from quatspline.primitives import mul
+from quatspline.segments import SegmentCurve
 
 STILL = 1e-14
 """A velocity below this share of its neighbours' has no direction; a sum below it no bisector."""

@@ -6,11 +6,11 @@ from typing import Literal
 
 import numpy as np
 
-from quatspline.families.bezier import FIT
 from quatspline.families.nested import TRIANGLE
-from quatspline.families.segments import SegmentCurve
-from quatspline.families.tangents import CHART, SECANT
+from quatspline.fitting.bezier import FIT
+from quatspline.fitting.tangents import CHART, SECANT
 from quatspline.keyframes import Keyframes
+from quatspline.segments import SegmentCurve
 
 
 class CatmullRom(SegmentCurve):

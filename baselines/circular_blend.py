@@ -7,11 +7,11 @@ from typing import Literal
 
 import numpy as np
 
-from quatspline._jit import compiled, fit_kernel, inlined
 from quatspline.families.circles import BLEND, SPLIT, combine, dot, set_circle, unit
-from quatspline.families.segments import SegmentCurve
-from quatspline.families.tangents import keyframe
+from quatspline.fitting.tangents import keyframe
+from quatspline.kernels.jit import compiled, fit_kernel, inlined
 from quatspline.keyframes import Keyframes
+from quatspline.segments import SegmentCurve
 
 SAME = 1e-12
 """Keyframes nearer than this are one: the direction from one to the other is rounding."""

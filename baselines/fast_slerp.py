@@ -8,19 +8,13 @@ from typing import Annotated
 import numpy as np
 from numba import carray
 
-from quatspline._jit import BLOCK, CONSTANTS, REACH, ROWS, fit_kernel, inlined, sample_kernel
 from quatspline.families.chords import SIZE as CHORD
-from quatspline.families.chords import (
-    VERSINE,
-    set_acceleration,
-    set_chord,
-    set_point,
-    set_velocity,
-)
-from quatspline.families.segments import Family, SegmentCurve
-from quatspline.families.tangents import keyframe
+from quatspline.families.chords import VERSINE, set_acceleration, set_chord, set_point, set_velocity
+from quatspline.fitting.tangents import keyframe
+from quatspline.kernels.jit import BLOCK, CONSTANTS, REACH, ROWS, fit_kernel, inlined, sample_kernel
 from quatspline.keyframes import Keyframes
 from quatspline.options import AtMost, Count
+from quatspline.segments import Family, SegmentCurve
 
 # notation: y = 1 - cos(theta); constants of a segment: its chord, then the number of terms and the
 # correction of the last term.  Rows behind them hold f and its u-derivatives for both weights.

@@ -6,12 +6,12 @@ from typing import Literal
 
 import numpy as np
 
-from quatspline._jit import REACH, fit_kernel
 from quatspline.families.cumulative import UNBOUNDED, set_base, set_factor
-from quatspline.families.segments import SegmentCurve
-from quatspline.families.tangents import CHART, SECANT, chart_velocities, keyframe
+from quatspline.fitting.tangents import CHART, SECANT, chart_velocities, keyframe
+from quatspline.kernels.jit import REACH, fit_kernel
+from quatspline.kernels.scalars import between, exp, log, mul
 from quatspline.keyframes import Keyframes
-from quatspline.primitives import between, exp, log, mul
+from quatspline.segments import SegmentCurve
 
 
 class Hermite(SegmentCurve):

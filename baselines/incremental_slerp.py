@@ -7,13 +7,13 @@ from typing import Annotated
 
 import numpy as np
 
-from quatspline._jit import REACH, fit_kernel, inlined
 from quatspline.families.arcs import ARC, SIZE, set_arc
-from quatspline.families.driver import fit_tracks
-from quatspline.families.segments import SegmentCurve
-from quatspline.families.tangents import keyframe, moved, step
+from quatspline.fitting.tangents import keyframe, moved, step
+from quatspline.kernels.driver import fit_tracks
+from quatspline.kernels.jit import REACH, fit_kernel, inlined
 from quatspline.keyframes import Keyframes
 from quatspline.options import AtMost, Count
+from quatspline.segments import SegmentCurve
 
 MOST = 100_000_000
 """Points kept, of 72 bytes each."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from quatspline.families.peers import InterpolatePyCurve
 from quatspline.keyframes import Keyframes
+from quatspline.peers.wrapping import InterpolatePyCurve
 from quatspline.quaternion import FloatArray
 
 

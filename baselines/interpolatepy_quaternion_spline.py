@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Literal
 
-from quatspline.families.peers import InterpolatePyCurve
 from quatspline.keyframes import Keyframes
+from quatspline.peers.wrapping import InterpolatePyCurve
 
 
 class InterpolatePyQuaternionSpline(InterpolatePyCurve):

@@ -22,8 +22,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from quatspline._jit import CHANGE, ITERATIONS, REACH, RESIDUAL, compiled, fit_kernel
-from quatspline.families.bspline import (
+from quatspline.families.cumulative import CUMULATIVE
+from quatspline.fitting.bspline import (
     control,
     end_velocity,
     increment,
@@ -37,14 +37,14 @@ from quatspline.families.bspline import (
     turned,
     write_segments,
 )
-from quatspline.families.bspline_newton import copy, descend, moved, newton, settle
-from quatspline.families.cumulative import CUMULATIVE
-from quatspline.families.segments import SegmentCurve
-from quatspline.inputs import at, real_array, refuse_infinite
+from quatspline.fitting.bspline_newton import copy, descend, moved, newton, settle
+from quatspline.inputs.arrays import at, real_array, refuse_infinite
+from quatspline.kernels.jit import CHANGE, ITERATIONS, REACH, RESIDUAL, compiled, fit_kernel
+from quatspline.kernels.scalars import between, mul
 from quatspline.keyframes import Keyframes
 from quatspline.options import LARGEST, Count, OnFailure, Positive, Stop
-from quatspline.primitives import between, mul
 from quatspline.quaternion import FloatArray
+from quatspline.segments import SegmentCurve
 
 METHOD, BY_CHANGE, TOLERANCE, LIMIT, CLAMPED, HAS_START, HAS_END, VELOCITIES = range(8)
 

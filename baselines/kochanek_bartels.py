@@ -7,13 +7,13 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from quatspline.families.bezier import FIT
 from quatspline.families.nested import TRIANGLE
-from quatspline.families.segments import SegmentCurve
-from quatspline.families.tangents import CHART, SECANT
+from quatspline.fitting.bezier import FIT
+from quatspline.fitting.tangents import CHART, SECANT
 from quatspline.keyframes import Keyframes
 from quatspline.options import per_keyframe
 from quatspline.quaternion import FloatArray
+from quatspline.segments import SegmentCurve
 
 
 class KochanekBartels(SegmentCurve):

@@ -9,9 +9,9 @@ from scipy.interpolate import CubicSpline
 
 from quatspline import quaternion
 from quatspline.families.rotation_vector import PHI, Q0, ROTATION_VECTOR
-from quatspline.families.segments import SegmentCurve
 from quatspline.keyframes import Keyframes
 from quatspline.quaternion import FloatArray
+from quatspline.segments import SegmentCurve
 
 
 class LogCubicSpline(SegmentCurve):

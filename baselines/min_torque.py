@@ -6,13 +6,13 @@ from typing import Annotated
 
 import numpy as np
 
-from quatspline._jit import REACH
-from quatspline.families.least_torque import minimise
 from quatspline.families.rotation_vector import ROTATION_VECTOR
-from quatspline.families.segments import SegmentCurve
+from quatspline.fitting.least_torque import minimise
+from quatspline.kernels.jit import REACH
 from quatspline.keyframes import Keyframes
 from quatspline.options import AtMost, Count, OnFailure, Positive
-from quatspline.schemes.local_quintic import LocalQuinticSpline
+from quatspline.proposed.local_quintic import LocalQuinticSpline
+from quatspline.segments import SegmentCurve
 
 HIT = 1e-9
 """Largest miss at a keyframe in rad, where the tolerance is less: keyframes are nodes, so that a miss

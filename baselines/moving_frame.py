@@ -29,7 +29,7 @@ import numpy as np
 from numba import carray
 
 from quatspline import quaternion
-from quatspline._jit import (
+from quatspline.kernels.jit import (
     BLOCK,
     CONSTANTS,
     RESULT,
@@ -39,11 +39,11 @@ from quatspline._jit import (
     inlined,
     sample_kernel,
 )
-from quatspline.families.segments import Family, SegmentCurve
+from quatspline.kernels.scalars import cross, mul
 from quatspline.keyframes import Keyframes
-from quatspline.primitives import cross, mul
 from quatspline.quaternion import FloatArray
-from quatspline.quiet import quiet
+from quatspline.segments import Family, SegmentCurve
+from quatspline.system.quiet import quiet
 
 # notation: the constants of a segment are a base quaternion (4), the middle of its arc, then those of
 # B seen from there (`_entry`), nine for each of f, r, g_0 ..., column by column: B[row, j] is entry

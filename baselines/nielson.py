@@ -8,15 +8,15 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from quatspline._jit import CHANGE, ITERATIONS, REACH, RESIDUAL, compiled, fit_kernel
-from quatspline.families.bezier import set_controls
-from quatspline.families.bspline import keyframe
 from quatspline.families.nested import TRIANGLE
-from quatspline.families.nu_newton import newton_legs
-from quatspline.families.segments import SegmentCurve
+from quatspline.fitting.bezier import set_controls
+from quatspline.fitting.bspline import keyframe
+from quatspline.fitting.nu_newton import newton_legs
+from quatspline.kernels.jit import CHANGE, ITERATIONS, REACH, RESIDUAL, compiled, fit_kernel
+from quatspline.kernels.scalars import arc_angle, slerp
 from quatspline.keyframes import Keyframes
 from quatspline.options import Count, OnFailure, Positive, Stop, per_keyframe
-from quatspline.primitives import arc_angle, slerp
+from quatspline.segments import SegmentCurve
 
 METHOD, BY_RESIDUAL, TOLERANCE, LIMIT, STATIONARY, TENSION = range(6)
 """Places of the options among a fit kernel's parameters; the tensions are the rest."""

@@ -4,17 +4,11 @@ from __future__ import annotations
 
 from numba import carray
 
-from quatspline._jit import BLOCK, REACH, ROWS, fit_kernel, sample_kernel
-from quatspline.families.chords import (
-    SIZE,
-    set_acceleration,
-    set_chord,
-    set_point,
-    set_velocity,
-)
-from quatspline.families.segments import Family, SegmentCurve
-from quatspline.families.tangents import keyframe
+from quatspline.families.chords import SIZE, set_acceleration, set_chord, set_point, set_velocity
+from quatspline.fitting.tangents import keyframe
+from quatspline.kernels.jit import BLOCK, REACH, ROWS, fit_kernel, sample_kernel
 from quatspline.keyframes import Keyframes
+from quatspline.segments import Family, SegmentCurve
 
 
 @sample_kernel

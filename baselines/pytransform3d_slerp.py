@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from quatspline.families.peers import PeerCurve, pairs, with_return
 from quatspline.keyframes import Keyframes
+from quatspline.peers.wrapping import PeerCurve, pairs, with_return
 from quatspline.quaternion import FloatArray
 
 

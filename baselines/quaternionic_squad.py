@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from quatspline.families.peers import PeerCurve
 from quatspline.keyframes import Keyframes
+from quatspline.peers.wrapping import PeerCurve
 from quatspline.quaternion import FloatArray
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from quatspline import quaternion
-from quatspline.families.peers import PeerCurve, pairs, with_return
 from quatspline.keyframes import Keyframes
+from quatspline.peers.wrapping import PeerCurve, pairs, with_return
 from quatspline.quaternion import FloatArray
 
 

@@ -7,13 +7,13 @@ from typing import Literal
 
 import numpy as np
 
-from quatspline._jit import REACH, compiled, fit_kernel
-from quatspline.families.bezier import set_controls
 from quatspline.families.nested import TRIANGLE, restored
-from quatspline.families.segments import SegmentCurve
-from quatspline.families.tangents import CHART, SECANT, end_velocity, keyframe, moved
+from quatspline.fitting.bezier import set_controls
+from quatspline.fitting.tangents import CHART, SECANT, end_velocity, keyframe, moved
+from quatspline.kernels.jit import REACH, compiled, fit_kernel
+from quatspline.kernels.scalars import slerp
 from quatspline.keyframes import Keyframes
-from quatspline.primitives import slerp
+from quatspline.segments import SegmentCurve
 
 STATIONARY = 2.0
 

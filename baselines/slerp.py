@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from quatspline._jit import REACH, fit_kernel
 from quatspline.families.arcs import ARC, set_arc
-from quatspline.families.segments import SegmentCurve
+from quatspline.kernels.jit import REACH, fit_kernel
 from quatspline.keyframes import Keyframes
+from quatspline.segments import SegmentCurve
 
 
 class Slerp(SegmentCurve):

@@ -7,22 +7,16 @@ from typing import Literal
 
 import numpy as np
 
-from quatspline._jit import CHANGE, ITERATIONS, RESIDUAL, compiled, fit_kernel, inlined
-from quatspline.families import bspline
-from quatspline.families.block_tridiagonal import backward, forward, workspace
-from quatspline.families.mean_leaps import leaps, share_a_half
-from quatspline.families.segments import SegmentCurve
-from quatspline.families.spherical_mean import (
-    SIZE,
-    SPHERICAL_MEAN,
-    WEIGHTS,
-    curvature,
-    newton_step,
-)
-from quatspline.families.tangents import keyframe, moved
+from quatspline.families.means import SIZE, SPHERICAL_MEAN, WEIGHTS, curvature, newton_step
+from quatspline.fitting import bspline
+from quatspline.fitting.block_tridiagonal import backward, forward, workspace
+from quatspline.fitting.mean_leaps import leaps, share_a_half
+from quatspline.fitting.tangents import keyframe, moved
+from quatspline.kernels.jit import CHANGE, ITERATIONS, RESIDUAL, compiled, fit_kernel, inlined
+from quatspline.kernels.scalars import exp, log_between, mul
 from quatspline.keyframes import Keyframes
 from quatspline.options import Count, OnFailure, Positive, Stop
-from quatspline.primitives import exp, log_between, mul
+from quatspline.segments import SegmentCurve
 
 CAP = 0.8
 """Largest half angle by which one update may turn a control."""

@@ -6,13 +6,13 @@ from typing import Literal
 
 import numpy as np
 
-from quatspline._jit import REACH, compiled, fit_kernel
 from quatspline.families.arcs import SIZE as ARC
 from quatspline.families.arcs import set_arc
 from quatspline.families.nested import SQUAD
-from quatspline.families.segments import SegmentCurve
-from quatspline.families.tangents import CHART, SECANT, chart_velocities, keyframe, moved, step
+from quatspline.fitting.tangents import CHART, SECANT, chart_velocities, keyframe, moved, step
+from quatspline.kernels.jit import REACH, compiled, fit_kernel
 from quatspline.keyframes import Keyframes
+from quatspline.segments import SegmentCurve
 
 TWO_A, SINGLE_A, TEXTBOOK = 0.0, 1.0, 2.0
 

@@ -10,7 +10,7 @@ from typing import Any
 import pandas as pd
 import pytest
 
-from quatspline.instruments.speed import FILL, SINCOS
+from quatspline.timing.speed import FILL, SINCOS
 
 
 @pytest.hookimpl(trylast=True)

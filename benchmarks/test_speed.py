@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from quatspline.instruments.speed import FLOORS, Task, contender_of, tasks
-from quatspline.instruments.timing import OverBudget
-from quatspline.registry import schemes, version
+from quatspline.catalogue import schemes, version
+from quatspline.timing.interleaved import OverBudget
+from quatspline.timing.speed import FLOORS, Task, contender_of, tasks
 
 SEED = 0
 

@@ -8,13 +8,13 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from quatspline.catalogue import found
+from quatspline.catalogue import scheme as scheme_class
+from quatspline.figures import style
 from quatspline.instruments.accuracy import TARGETS, errors, knots, with_reach, with_slopes
 from quatspline.instruments.trials import Row, attempted, builder, facts
 from quatspline.quaternion import FloatArray
-from quatspline.registry import found
-from quatspline.registry import scheme as scheme_class
-from quatspline.report import style
-from quatspline.running import Run
+from quatspline.runs.running import Run
 from quatspline.trajectories.smooth import SPAN, tumble
 
 TITLE = "Accuracy on a smooth motion"

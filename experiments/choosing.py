@@ -7,13 +7,14 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from quatspline.instruments.claims import DEPARTS, UNDECIDED
-from quatspline.instruments.operations import SET_UP, stated
+from quatspline.catalogue import found, version
+from quatspline.claims.claim import DEPARTS, UNDECIDED
+from quatspline.figures import style
+from quatspline.findings import choosing
+from quatspline.findings.quotes import Reader
 from quatspline.quaternion import FloatArray
-from quatspline.registry import found, version
-from quatspline.report import choosing, style
-from quatspline.report.quotes import Reader
-from quatspline.running import Run
+from quatspline.runs.running import Run
+from quatspline.timing.operations import SET_UP, stated
 from quatspline.trajectories.sets import COUNT
 
 TITLE = "Which scheme"

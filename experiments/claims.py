@@ -9,9 +9,9 @@ import matplotlib as mpl
 import pandas as pd
 from matplotlib.figure import Figure
 
-from quatspline.curve import Curve
-from quatspline.instruments import probes
-from quatspline.instruments.claims import (
+from quatspline.catalogue import found, version
+from quatspline.claims import probes
+from quatspline.claims.claim import (
     DEPARTS,
     HOLDS,
     PUBLICATION,
@@ -22,12 +22,12 @@ from quatspline.instruments.claims import (
     Source,
     judged,
 )
-from quatspline.instruments.published import published, works
+from quatspline.claims.published import published, works
+from quatspline.curve import Curve
+from quatspline.figures import style
+from quatspline.figures.heat import ROW, label_cells
 from quatspline.instruments.trials import Row
-from quatspline.registry import found, version
-from quatspline.report import style
-from quatspline.report.heat import ROW, label_cells
-from quatspline.running import Run
+from quatspline.runs.running import Run
 
 TITLE = "Claims and verdicts"
 PAPER = False

@@ -7,13 +7,13 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from quatspline.catalogue import found
+from quatspline.figures import style
+from quatspline.figures.heat import ROW
 from quatspline.instruments.continuity import jumps, measured_continuity, speeds
 from quatspline.instruments.trials import Row, attempted, builder, facts, records
 from quatspline.quaternion import FloatArray
-from quatspline.registry import found
-from quatspline.report import style
-from quatspline.report.heat import ROW
-from quatspline.running import Run
+from quatspline.runs.running import Run
 from quatspline.trajectories.smooth import SPAN, tumble
 from quatspline.trajectories.walks import walk
 

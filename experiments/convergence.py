@@ -7,8 +7,9 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from quatspline import registry
+from quatspline import catalogue
 from quatspline.curve import Curve
+from quatspline.figures import style
 from quatspline.instruments.continuity import jumps
 from quatspline.instruments.convergence import (
     FAILURES,
@@ -20,8 +21,7 @@ from quatspline.instruments.convergence import (
 )
 from quatspline.instruments.trials import reason
 from quatspline.quaternion import FloatArray
-from quatspline.report import style
-from quatspline.running import Run
+from quatspline.runs.running import Run
 from quatspline.trajectories.walks import walk
 
 TITLE = "Convergence of iterative schemes"
@@ -79,7 +79,7 @@ def cells(run: Run) -> list[dict[str, Any]]:
 
 def _concerned(run: Run) -> dict[str, type[Curve]]:
     """Iterative schemes, and libraries that solve for all keyframes without telling how it went."""
-    known = {name: registry.scheme(name) for name in run.schemes or registry.schemes()}
+    known = {name: catalogue.scheme(name) for name in run.schemes or catalogue.schemes()}
     silent = {name for name, cls in known.items() if cls.peer and cls.support is None}
     return {name: cls for name, cls in known.items() if cls.iterative or name in silent}
 
@@ -87,7 +87,7 @@ def _concerned(run: Run) -> dict[str, type[Curve]]:
 def measure_cell(
     run: Run, scheme: str, method: str | None, step_degrees: int, unevenness: int, keyframes: int
 ) -> dict[str, Any]:
-    cls = registry.scheme(scheme)
+    cls = catalogue.scheme(scheme)
     row: dict[str, Any] = {"scheme": scheme, "method": method, "keyframes": keyframes}
     row |= {"step_degrees": step_degrees, "unevenness": unevenness, "failure": None}
     if failure := cls.impractical(keyframes):

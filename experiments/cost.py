@@ -8,11 +8,11 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from quatspline import registry
+from quatspline import catalogue
 from quatspline.curve import Curve
-from quatspline.instruments.cost import Call, Task, costs, operations, peak_bytes
-from quatspline.report import style
-from quatspline.running import Run
+from quatspline.figures import style
+from quatspline.runs.running import Run
+from quatspline.timing.cost import Call, Task, costs, operations, peak_bytes
 from quatspline.trajectories.smooth import tumble
 
 TITLE = "Cost of set-up and evaluation"
@@ -57,8 +57,8 @@ def cells(run: Run) -> list[dict[str, Any]]:
 
 
 def measure_cell(run: Run, task: str, size: int) -> list[dict[str, Any]]:
-    names = run.schemes or registry.schemes()
-    tasks = {name: TASKS[task](registry.scheme(name)) for name in names}
+    names = run.schemes or catalogue.schemes()
+    tasks = {name: TASKS[task](catalogue.scheme(name)) for name in names}
     budget = BUDGET_QUICK if run.quick else BUDGET
     effort: dict[str, Any] = {"rounds": 7, "duration": 1e-2}
     if run.quick:
@@ -67,7 +67,7 @@ def measure_cell(run: Run, task: str, size: int) -> list[dict[str, Any]]:
     rows = []
     for name in names:
         cost = found[name]
-        row = {"task": task, "size": size, "scheme": name, "version": registry.version(name)}
+        row = {"task": task, "size": size, "scheme": name, "version": catalogue.version(name)}
         row["run_size"] = run.size
         row |= {"failure": cost.failure, **_counts(task, name)}
         row |= {"seconds_median": cost.seconds, "seconds_iqr": cost.iqr}
@@ -133,7 +133,7 @@ def _curve(cls: type[Curve], count: int) -> Curve:
 @cache
 def _counts(task: str, name: str) -> dict[str, float]:
     try:
-        curve = _curve(registry.scheme(name), KEYFRAMES)
+        curve = _curve(catalogue.scheme(name), KEYFRAMES)
     except Exception:  # its row gives the reason
         return {}
     return operations(curve, "keyframe" if task == "set-up" else "sample")
@@ -147,7 +147,7 @@ def draw(table: pd.DataFrame) -> Figure:
     measured = table[table["seconds_median"].notna()]
     for ax, task, unit in zip(panels[0], SIZES, ("keyframe", "sample"), strict=False):
         for name, rows in measured[measured["task"] == task].groupby("scheme"):
-            peer = registry.scheme(str(name)).peer is not None
+            peer = catalogue.scheme(str(name)).peer is not None
             looks = style.scheme_style(str(name)) | {"ms": 2.5, "lw": 0.6 if peer else 1.1}
             looks |= {"markerfacecolor": "white", "mew": 0.6} if peer else {}
             ax.plot(rows["size"], rows["seconds_median"] / rows["size"], label=name, **looks)

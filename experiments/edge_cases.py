@@ -7,13 +7,13 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from quatspline.instruments.edges import edge_result
+from quatspline.catalogue import found, version
+from quatspline.figures import style
+from quatspline.figures.heat import ROW, label_cells
+from quatspline.instruments.edge_cases import edge_result
 from quatspline.instruments.trials import TIGHT, Row
-from quatspline.registry import found, version
-from quatspline.report import style
-from quatspline.report.heat import ROW, label_cells
-from quatspline.running import Run
-from quatspline.trajectories.edges import edge_cases
+from quatspline.runs.running import Run
+from quatspline.trajectories.edge_cases import edge_cases
 
 TITLE = "Edge cases"
 PAPER = False

@@ -7,14 +7,14 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from quatspline.catalogue import found, version
+from quatspline.figures import style
+from quatspline.figures.heat import ROW, log_heat
 from quatspline.instruments.continuity import jumps, measured_continuity
 from quatspline.instruments.fairness import fairness
 from quatspline.instruments.trials import Row, attempted, builder
 from quatspline.quaternion import FloatArray
-from quatspline.registry import found, version
-from quatspline.report import style
-from quatspline.report.heat import ROW, log_heat
-from quatspline.running import Run
+from quatspline.runs.running import Run
 from quatspline.trajectories.sets import COUNT, step_sets, torque_sets
 
 TITLE = "Fairness: torque energy over the minimum"

@@ -4,10 +4,10 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from quatspline.catalogue import scheme
+from quatspline.figures.blending import draw_blending
 from quatspline.instruments.blending import blending
-from quatspline.registry import scheme
-from quatspline.report.blending import draw_blending
-from quatspline.running import Run
+from quatspline.runs.running import Run
 
 TITLE = "Figure 1: blending functions of the quartic"
 PAPER = True

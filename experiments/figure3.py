@@ -3,8 +3,8 @@
 import pandas as pd
 from matplotlib.figure import Figure
 
-from quatspline.report.motions import caption_of, four_panels, motion_table
-from quatspline.running import Run
+from quatspline.figures.motions import caption_of, four_panels, motion_table
+from quatspline.runs.running import Run
 from quatspline.trajectories.paper import KEY, RECONSTRUCTED
 
 TITLE = "Figure 3: the key"

@@ -6,12 +6,11 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from quatspline.catalogue import scheme
+from quatspline.figures import style
 from quatspline.quaternion import FloatArray
-from quatspline.registry import scheme
-from quatspline.report import style
-from quatspline.running import Run
-from quatspline.trajectories.paper import CASES, RECONSTRUCTED, SOLVE, PaperCase
-from quatspline.trajectories.search import steps
+from quatspline.runs.running import Run
+from quatspline.trajectories.paper import CASES, RECONSTRUCTED, SOLVE, PaperCase, steps
 from quatspline.trajectories.walks import loop, walk
 
 TITLE = "Iterations of random keyframes against the step angle"

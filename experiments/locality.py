@@ -7,13 +7,13 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from quatspline.catalogue import found
+from quatspline.catalogue import scheme as scheme_class
+from quatspline.figures import style
+from quatspline.figures.heat import ROW, log_heat
 from quatspline.instruments.locality import locality, responses
 from quatspline.instruments.trials import Row, attempted, builder, facts, records
-from quatspline.registry import found
-from quatspline.registry import scheme as scheme_class
-from quatspline.report import style
-from quatspline.report.heat import ROW, log_heat
-from quatspline.running import Run
+from quatspline.runs.running import Run
 from quatspline.trajectories.walks import walk
 
 TITLE = "Locality"

@@ -7,12 +7,12 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from quatspline.catalogue import found
+from quatspline.figures import style
+from quatspline.figures.heat import ROW
 from quatspline.instruments.noise import noise
 from quatspline.instruments.trials import Row, attempted, builder, facts
-from quatspline.registry import found
-from quatspline.report import style
-from quatspline.report.heat import ROW
-from quatspline.running import Run
+from quatspline.runs.running import Run
 from quatspline.trajectories.walks import walk
 
 TITLE = "Response to noise"

@@ -4,11 +4,11 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from quatspline.experiment import FULL, QUICK, Run
-from quatspline.instruments.speed import FILL, FLOORS, SINCOS, Task, measured, starts, tasks
-from quatspline.instruments.timing import LEAST
-from quatspline.registry import found, version
-from quatspline.report import style
+from quatspline.catalogue import found, version
+from quatspline.figures import style
+from quatspline.runs.experiment import FULL, QUICK, Run
+from quatspline.timing.interleaved import LEAST
+from quatspline.timing.speed import FILL, FLOORS, SINCOS, Task, measured, starts, tasks
 
 TITLE = "Speed"
 PAPER = False

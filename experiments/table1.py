@@ -6,14 +6,14 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from quatspline.catalogue import scheme
 from quatspline.curve import Curve
-from quatspline.instruments.operations import OPERATIONS, executed, iterations
-from quatspline.instruments.protocols import PROTOCOLS, Protocol, frames
-from quatspline.instruments.timing import Contender, interleaved
 from quatspline.instruments.trials import reason
 from quatspline.options import declared
-from quatspline.registry import scheme
-from quatspline.running import Run
+from quatspline.runs.running import Run
+from quatspline.timing.interleaved import Contender, interleaved
+from quatspline.timing.operations import OPERATIONS, executed, iterations
+from quatspline.timing.protocols import PROTOCOLS, Protocol, frames
 from quatspline.trajectories.paper import CASES, RECONSTRUCTED, SOLVE, PaperCase, Row
 
 TITLE = "Table 1: iterations and seconds"
@@ -80,7 +80,7 @@ def _group(
 
 
 def _rendering(case: PaperCase, t: Any, generate: Callable[[int], Any]) -> Callable[[int], Any]:
-    from quatspline.report.motions import render
+    from quatspline.figures.motions import render
 
     def contender(repeats: int) -> None:
         for _ in range(repeats):

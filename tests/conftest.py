@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 import quatspline as qs
+from quatspline.catalogue import found
 from quatspline.curve import Curve
-from quatspline.registry import found
 
 VARIABLE = "QUATSPLINE_SCHEME"
 
@@ -62,7 +62,7 @@ def _departure(scheme: type[Curve], check: str) -> list[pytest.MarkDecorator]:
 def page_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A results folder with its page."""
     import pages
-    from quatspline.report.page import write_page
+    from quatspline.page import write_page
 
     made = pages.results(tmp_path_factory.mktemp("page") / "results")
     write_page(made, scenes=pages.scenes())

@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from quatspline.families.segments import SegmentCurve
-from quatspline.registry import scheme
+from quatspline.catalogue import scheme
+from quatspline.segments import SegmentCurve
 from quatspline.trajectories.paper import CASES
 
 KINDS = {
@@ -78,8 +78,12 @@ def counted(name: str, case: str, *stop: str) -> dict[str, int]:
 def main(*asked: str) -> None:
     jobs = [job.split(",") for job in asked]
     schemes = {scheme(name).__module__ for name, *_ in jobs}
-    kernels = [m for n, m in sys.modules.items() if n.startswith("quatspline.families.")]
-    watch([*kernels, sys.modules["quatspline.primitives"], *map(sys.modules.get, schemes)])
+    kernels = [
+        m
+        for n, m in sys.modules.items()
+        if n.startswith(("quatspline.families.", "quatspline.fitting."))
+    ]
+    watch([*kernels, sys.modules["quatspline.kernels.scalars"], *map(sys.modules.get, schemes)])
     SegmentCurve._solve = solve  # type: ignore[assignment]
     for job in jobs:
         print(json.dumps(counted(*job)))

@@ -13,9 +13,9 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from quatspline.report.page import Scene, paper_scenes
-from quatspline.report.readme import REFERENCE
-from quatspline.report.results import Results
+from quatspline.page import Scene, paper_scenes
+from quatspline.runs.results import Results
+from tools.readme import REFERENCE
 
 EVIL = '</script><script>alert(1)</script><img src=x onerror="alert(2)">&amp;'
 

@@ -10,7 +10,7 @@ import pytest
 
 import quatspline as qs
 from quatspline.comparing import COLUMNS, ENERGIES
-from quatspline.report import advice
+from quatspline.findings import advice
 from walks import walk
 
 TIMES = ["seconds_set_up", "seconds_per_sample"]

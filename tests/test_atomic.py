@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from quatspline.atomic import ASIDE, clear_asides, replacing, same_file
+from quatspline.system.atomic import ASIDE, clear_asides, replacing, same_file
 
 
 @pytest.fixture(autouse=True)

@@ -12,9 +12,9 @@ import pytest
 
 import quatspline as qs
 from quatspline import comparing
-from quatspline.instruments import practical
-from quatspline.instruments.budget import Budget, calls, seconds
-from quatspline.instruments.practical import left_out
+from quatspline.timing import practical
+from quatspline.timing.budget import Budget, calls, seconds
+from quatspline.timing.practical import left_out
 from walks import walk
 
 IN_HOUSE = [name for name in qs.schemes() if qs.scheme(name).peer is None]

@@ -8,12 +8,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from quatspline import running
-from quatspline.experiment import Run, experiments, found
-from quatspline.registry import load
-from quatspline.report import choosing, style
-from quatspline.report.findings import findings, reader
-from quatspline.report.results import Results
+from quatspline.catalogue import load
+from quatspline.figures import style
+from quatspline.findings import choosing
+from quatspline.findings.findings import findings, reader
+from quatspline.runs import running
+from quatspline.runs.experiment import Run, experiments, found
+from quatspline.runs.results import Results
 
 LESS = {"a": -1, "b": -1}
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import quatspline as qs
-from quatspline import numeric, quaternion
+from quatspline import quaternion, stencil
 from quatspline.curve import Curve
 from quatspline.families.circles import BIARC, BLEND, SPLIT
 from quatspline.quaternion import FloatArray
@@ -90,7 +90,7 @@ def test_blend_rates_and_joins(kind: str, blend: str) -> None:
     curve = qs.build("circular-blend", knots, q, blend=blend, **given)
     assert curve.continuity == (2 if blend == "smooth" else 1)
     t = inside(knots, 7)
-    for order, wanted in enumerate(numeric.rates(curve._orientation, t, knots), start=1):
+    for order, wanted in enumerate(stencil.rates(curve._orientation, t, knots), start=1):
         assert apart(curve(t, order), wanted) < RATES * np.abs(wanted).max()
     left, right = np.nextafter(knots[1:-1], -1.0), knots[1:-1]
     size = np.abs(curve(t, 2)).max()
@@ -121,7 +121,7 @@ def test_biarc_joints() -> None:
         assert apart(curve(joints - 1e-9, order), curve(joints + 1e-9, order)) < largest
     t = inside(knots, 40)
     t = t[np.abs(t[:, None] - joints).min(axis=1) > 0.06]
-    for order, wanted in enumerate(numeric.rates(curve._orientation, t, knots), start=1):
+    for order, wanted in enumerate(stencil.rates(curve._orientation, t, knots), start=1):
         assert apart(curve(t, order), wanted) < RATES * np.abs(wanted).max()
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import quatspline as qs
-from quatspline import numeric, quaternion
+from quatspline import quaternion, stencil
 from quatspline.curve import Curve
 from quatspline.quaternion import FloatArray
 from walks import apart, apart_up_to_sign, applies, count_of, curve_of, inside, loop, uneven, walk
@@ -39,10 +39,10 @@ def taylor(curve: Curve, t: FloatArray, h: float, order: int) -> FloatArray:
     if order == 0:
         return curve._orientation(t)
     if order < 3:
-        return numeric.rates(curve._orientation, t, knots)[order - 1]
+        return stencil.rates(curve._orientation, t, knots)[order - 1]
     nearest = knots[np.argmin(np.abs(t[:, None] - knots), axis=1)]
     away = np.sign(t - nearest) * h
-    alpha = [numeric.rates(curve._orientation, s, knots)[1] for s in (t, t + away, t + 2 * away)]
+    alpha = [stencil.rates(curve._orientation, s, knots)[1] for s in (t, t + away, t + 2 * away)]
     return (-1.5 * alpha[0] + 2.0 * alpha[1] - 0.5 * alpha[2]) / away[:, None]
 
 
@@ -176,7 +176,7 @@ def test_claims_are_of_their_kind(scheme: Scheme) -> None:
 
 
 def test_reference_is_in_the_bibliography(scheme: Scheme) -> None:
-    from quatspline.registry import shipped
+    from quatspline.catalogue import shipped
 
     entries = (shipped("references.bib").parent / "references.bib").read_text(encoding="utf-8")
     assert f"{{{scheme.reference}," in entries

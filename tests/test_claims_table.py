@@ -11,9 +11,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from quatspline.experiment import Run, found
-from quatspline.instruments import paper_probes, probes
-from quatspline.instruments.claims import (
+from quatspline.catalogue import load, schemes, shipped
+from quatspline.claims import paper_probes, probes
+from quatspline.claims.claim import (
     DEPARTS,
     HOLDS,
     PUBLICATION,
@@ -25,9 +25,9 @@ from quatspline.instruments.claims import (
     judged,
     shown,
 )
-from quatspline.instruments.published import published, works
-from quatspline.registry import load, schemes, shipped
-from quatspline.report import style
+from quatspline.claims.published import published, works
+from quatspline.figures import style
+from quatspline.runs.experiment import Run, found
 
 OURS = ["slerp", "quartic", "nielson", "shoemake-bezier"]
 PAPERS = "printed Q'' at a knot is the curve's, steps about any axes"

@@ -16,9 +16,11 @@ import pandas as pd
 import pytest
 
 import quatspline
-from quatspline import cli, experiment, registry, running
-from quatspline.grid import sample_times
-from quatspline.trajectories import files
+from quatspline import catalogue
+from quatspline.cli import commands
+from quatspline.cli.grid import sample_times
+from quatspline.motion import files
+from quatspline.runs import experiment, running
 
 Finished = subprocess.CompletedProcess[str]
 
@@ -76,7 +78,7 @@ class Desk:
         self.environment = os.environ | {
             "QUATSPLINE_EXPERIMENTS": str(folder / "experiments"),
             "QUATSPLINE_BASELINES": str(folder / "schemes"),
-            "PYTHONPATH": str(registry.PACKAGE.parent),
+            "PYTHONPATH": str(catalogue.PACKAGE.parent),
             "PYTHONDONTWRITEBYTECODE": "1",
         }
 
@@ -144,7 +146,7 @@ def test_help_and_version(desk: Desk) -> None:
 
 def test_help_imports_nothing_slow(desk: Desk) -> None:
     script = (
-        "import sys; from quatspline.cli import main; assert main(['--help']) == 0;"
+        "import sys; from quatspline.cli.commands import main; assert main(['--help']) == 0;"
         "slow = {'numpy', 'numba', 'scipy', 'pandas', 'matplotlib'} & set(sys.modules);"
         "assert not slow, slow"
     )
@@ -154,7 +156,7 @@ def test_help_imports_nothing_slow(desk: Desk) -> None:
 
 def test_list_imports_no_table_no_figure(desk: Desk) -> None:
     script = (
-        "import sys; from quatspline.cli import main; assert main(['list']) == 0;"
+        "import sys; from quatspline.cli.commands import main; assert main(['list']) == 0;"
         "slow = {'pandas', 'matplotlib', 'tqdm'} & set(sys.modules); assert not slow, slow"
     )
     command = [sys.executable, "-c", script]
@@ -248,7 +250,7 @@ def test_bad_usage_and_bad_input_are_told_in_one_line(
     np.savez("return.npz", times=[0, 1, 2], quaternions=[[1, 0, 0, 0], [0.8, 0.6, 0, 0]])
     desk.keyframes("long.csv", "-1e308,1,0,0,0\n1e308,0.8,0.6,0,0\n")
     desk.keyframes("uneven.csv", "0,1,0,0,0\n1,0.8,0.6,0,0\n5,0.6,0.8,0,0\n")
-    status = cli.main(arguments)  # in this process: there are many, and others are processes
+    status = commands.main(arguments)  # in this process: there are many, and others are processes
     output = capsys.readouterr()
     assert what in refused(subprocess.CompletedProcess(arguments, status, *output))
     assert output.out == ""
@@ -268,7 +270,7 @@ def test_files_that_no_reader_unpacks_are_told_in_one_line(
                 if whole.startswith(mark, at):
                     damaged[at + offset : at + offset + 1] = value
         Path("k.npz").write_bytes(damaged)
-        status = cli.main(["sample", "k.npz", "--scheme", "slerp", "--count", "2"])
+        status = commands.main(["sample", "k.npz", "--scheme", "slerp", "--count", "2"])
         line = refused(subprocess.CompletedProcess([], status, *capsys.readouterr()))
         assert line.startswith("quatspline: k.npz: not an NPZ file of plain arrays: it")
 

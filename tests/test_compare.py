@@ -11,15 +11,16 @@ import pandas as pd
 import pytest
 
 import quatspline as qs
-from quatspline import cli, quaternion
+from quatspline import quaternion
+from quatspline.cli import commands
 from quatspline.comparing import COLUMNS
+from quatspline.findings import advice
+from quatspline.findings.quotes import Quote
+from quatspline.instruments.rescue import unsolved
 from quatspline.keyframes import Keyframes
-from quatspline.report import advice
-from quatspline.report.quotes import Quote
-from quatspline.rescue import unsolved
+from quatspline.motion.files import Motion, write
 from quatspline.solving import SolveReport, require_converged
-from quatspline.trajectories.edges import edge_cases
-from quatspline.trajectories.files import Motion, write
+from quatspline.trajectories.edge_cases import edge_cases
 from walks import walk
 
 NAMES = ["quartic", "local-quintic", "squad", "slerp", "nielson", "min-torque"]
@@ -111,7 +112,7 @@ def test_a_failure_that_readers_know_is_said(
     for schemes in (names, names[:1]):
         out = tmp_path / f"out{len(schemes)}"
         arguments = ["compare", "--schemes", *schemes, str(keyframes), "--out", str(out)]
-        assert cli.main(arguments) == 0
+        assert commands.main(arguments) == 0
         told = capsys.readouterr().out.splitlines()
         head = "Take kim: " if "kim" in schemes else "No recommendation: nothing was measured."
         assert told[0].startswith(head)
@@ -133,7 +134,7 @@ def test_command_writes_table_figures_advice_and_page(
     )
     keyframes, out = tmp_path / "keys.tum", tmp_path / "out"
     write(keyframes, motion)
-    status = cli.main(["compare", str(keyframes), "--schemes", *NAMES, "--out", str(out)])
+    status = commands.main(["compare", str(keyframes), "--schemes", *NAMES, "--out", str(out)])
     assert status == 0
     assert capsys.readouterr().out.startswith("Take ")
     names = {path.name for path in out.iterdir()}
@@ -271,7 +272,7 @@ def test_the_edge_pack_never_shows_a_traceback(
         "nielson",
         *closed,
     ]
-    status = cli.main([*arguments, "--out", str(tmp_path / "out")])
+    status = commands.main([*arguments, "--out", str(tmp_path / "out")])
     told = capsys.readouterr()
     assert "Traceback" not in told.err
     assert status in (0, 2)

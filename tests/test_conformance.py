@@ -11,9 +11,8 @@ import numpy as np
 import pytest
 
 import quatspline as qs
-from quatspline import numeric, quaternion
+from quatspline import quaternion, segments, stencil
 from quatspline.curve import Curve
-from quatspline.families import segments
 from quatspline.options import nearest
 from walks import (
     apart,
@@ -560,7 +559,7 @@ def test_rates_are_the_curves_own(scheme: Scheme) -> None:
     for curve in (example(scheme), *([closed_example(scheme, 1)] if scheme.closable else [])):
         knots = curve.times - curve.times[0]
         t = np.unique(np.concatenate([inside(knots, 9), knots[:-1]]))
-        measured = numeric.rates(curve._orientation, t, knots)
+        measured = stencil.rates(curve._orientation, t, knots)
         h = np.diff(knots).min()
         for order in set(scheme.orders) - {0} - set(curve.numeric_orders):
             gap = np.linalg.norm(curve(t, order) - measured[order - 1], axis=1) * h**order

@@ -7,14 +7,14 @@ import pandas as pd
 import pytest
 
 from quatspline import quaternion
+from quatspline.catalogue import load, scheme, schemes, shipped
+from quatspline.claims.own import own_rates
 from quatspline.curve import Curve
-from quatspline.experiment import Run
 from quatspline.instruments.accuracy import errors, knots, reach, with_reach, with_slopes
 from quatspline.instruments.continuity import jumps, measured_continuity, speeds
 from quatspline.instruments.fairness import fairness
-from quatspline.instruments.own_rates import own_rates
 from quatspline.instruments.trials import builder
-from quatspline.registry import load, scheme, schemes, shipped
+from quatspline.runs.experiment import Run
 from quatspline.trajectories.smooth import tumble, tumble_rates
 from quatspline.trajectories.walks import walk
 from toys import AXIS, Turn, turned

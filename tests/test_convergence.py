@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scipy.interpolate import BSpline
 
+from quatspline.catalogue import load, scheme, shipped
 from quatspline.curve import Curve
 from quatspline.instruments import convergence
 from quatspline.instruments.continuity import jumps
-from quatspline.registry import load, scheme, shipped
-from quatspline.running import Run
+from quatspline.runs.running import Run
 from quatspline.solving import SolveReport
 from quatspline.trajectories.walks import walk
 

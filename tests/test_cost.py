@@ -9,11 +9,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from quatspline.catalogue import load, scheme, shipped
 from quatspline.curve import Curve
-from quatspline.families.segments import LAZY
-from quatspline.instruments import cost, speed
-from quatspline.registry import load, scheme, shipped
-from quatspline.running import Run
+from quatspline.runs.running import Run
+from quatspline.segments import LAZY
+from quatspline.timing import cost, speed
 from quatspline.trajectories.walks import walk
 
 AMPLE = 600.0

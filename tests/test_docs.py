@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 
 import quatspline as qs
-from quatspline.registry import found
-from quatspline.report.readme import DOCS, PICTURES, QUOTING, ROOT, derivations, pages_block
+from quatspline.catalogue import found
+from tools.readme import DOCS, PICTURES, QUOTING, ROOT, derivations, pages_block
 
 SOURCE_LINK = re.compile(r"\]\(([^)#:]+)(?:#[^)]*)?\)")
 SRC = re.compile(r'(?:src|<link[^>]* href)="([^"]+)"')

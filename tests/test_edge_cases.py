@@ -7,9 +7,9 @@ import pytest
 
 import quatspline as qs
 from quatspline import quaternion
-from quatspline.instruments import edges
-from quatspline.instruments.edges import SAMPLES, edge_result
-from quatspline.trajectories.edges import BASE, edge_cases
+from quatspline.instruments import edge_cases as module
+from quatspline.instruments.edge_cases import SAMPLES, edge_result
+from quatspline.trajectories.edge_cases import BASE, edge_cases
 from toys import Toy
 
 CASES = edge_cases()
@@ -77,7 +77,7 @@ SPOILT = {
 @pytest.mark.parametrize("fault", SPOILT)
 def test_faults_are_told_apart(monkeypatch, fault):
     broken = type("_Broken", (_Hole,), {"spoilt": staticmethod(SPOILT[fault]), "name": "toy"})
-    monkeypatch.setattr(edges, "scheme", lambda name: broken)
+    monkeypatch.setattr(module, "scheme", lambda name: broken)
     row = edge_result(CASES["there and back"], "toy")
     assert row["result"] == ("NaN" if fault == "NaN" else "wrong")
     if fault == "wrong":
@@ -94,7 +94,7 @@ def test_rates_that_are_not_numbers_count(monkeypatch):
         def _acceleration(self, t):
             return np.full((len(t), 3), np.nan)
 
-    monkeypatch.setattr(edges, "scheme", lambda name: Rates)
+    monkeypatch.setattr(module, "scheme", lambda name: Rates)
     row = edge_result(CASES["equal keys"], "toy")
     assert (row["result"], row["failure"]) == ("NaN", "acceleration is not a number")
 
@@ -152,7 +152,7 @@ class _Bent(Toy):
 )
 def test_a_deviation_counts_where_none_is_claimed(monkeypatch, claim, segment, result):
     claims = {"constant_rate": claim, "segment": segment, "support": 4, "name": "toy"}
-    monkeypatch.setattr(edges, "scheme", lambda name: type("_", (_Bent,), claims))
+    monkeypatch.setattr(module, "scheme", lambda name: type("_", (_Bent,), claims))
     row = edge_result(CASES["sign-flipped"], "toy", align=True)
     assert row["result"] == result
     assert row["relative"] == pytest.approx(0.01)
@@ -165,6 +165,6 @@ def test_a_missed_keyframe_is_a_fault_unless_none_is_met(monkeypatch):
 
     for interpolates, result in ((True, "wrong"), (False, "as claimed")):
         cls = type("_", (Off,), {"interpolates": interpolates, "name": "toy"})
-        monkeypatch.setattr(edges, "scheme", lambda name, cls=cls: cls)
+        monkeypatch.setattr(module, "scheme", lambda name, cls=cls: cls)
         for case in ("sign-flipped", "there and back"):
             assert edge_result(CASES[case], "toy")["result"] == result

@@ -12,18 +12,19 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from quatspline import quaternion, running
+from quatspline import quaternion
+from quatspline.catalogue import load, scheme, shipped
+from quatspline.figures import motions, style
+from quatspline.findings.findings import findings, reader
 from quatspline.instruments.blending import blending
-from quatspline.instruments.protocols import PROTOCOLS, frames
-from quatspline.instruments.timing import interleaved
-from quatspline.registry import load, scheme, shipped
-from quatspline.report import motions, style
-from quatspline.report.findings import findings, reader
-from quatspline.report.readme import QUOTING, REFERENCE, ROOT, renewed
-from quatspline.running import Run
-from quatspline.trajectories import search
+from quatspline.runs import running
+from quatspline.runs.running import Run
+from quatspline.timing.interleaved import interleaved
+from quatspline.timing.protocols import PROTOCOLS, frames
 from quatspline.trajectories.paper import CASES, KEY, SOLVE, TEAPOT
 from quatspline.trajectories.walks import loop, walk
+from tools import paper_search
+from tools.readme import QUOTING, REFERENCE, ROOT, renewed
 
 COLUMNS = [
     *("case", "frames", "scheme", "protocol", "iterations", "tolerance", "slerps", "exps", "logs"),
@@ -52,18 +53,18 @@ def test_cases_are_round_numbers_of_the_search(case):
     euler = np.array(case.euler)
     assert (euler % 10 == 0).all()
     assert case.keyframes().signs[0] == 1.0
-    assert np.all(search.steps(case.quaternions[None], case.closed) < 180.0)
+    assert np.all(paper_search.steps(case.quaternions[None], case.closed) < 180.0)
 
 
 def test_search_finds_the_committed_key():
-    found, hits = search.calmest(search.key_candidates, 16, False, 5)
+    found, hits = paper_search.calmest(paper_search.key_candidates, 16, False, 5)
     np.testing.assert_array_equal(found, KEY.euler)
     assert hits > 1000
 
 
 def test_loops_have_equal_steps():
     q = loop(np.random.default_rng(5), 6, 80.0, 7)
-    angles = search.steps(np.moveaxis(q, 1, 0), True)
+    angles = paper_search.steps(np.moveaxis(q, 1, 0), True)
     assert q.shape == (6, 7, 4)
     np.testing.assert_allclose(angles, 80.0, rtol=1e-9)
 
@@ -191,7 +192,7 @@ def test_no_two_schemes_share_colour_and_marker():
 def test_walks_are_reproducible_and_have_their_step():
     a, b = (walk(np.random.default_rng(1), 8, 70.0, 3) for _ in range(2))
     np.testing.assert_array_equal(a, b)
-    np.testing.assert_allclose(search.steps(np.moveaxis(a, 1, 0), False), 70.0, rtol=1e-12)
+    np.testing.assert_allclose(paper_search.steps(np.moveaxis(a, 1, 0), False), 70.0, rtol=1e-12)
 
 
 def test_readme_quotes_the_reference_tables():

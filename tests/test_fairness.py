@@ -14,13 +14,13 @@ from scipy.optimize import minimize_scalar
 
 import quatspline as qs
 from quatspline import quaternion
+from quatspline.catalogue import load, scheme, shipped
 from quatspline.curve import Curve
-from quatspline.experiment import Run
 from quatspline.instruments.breaks import UNBROKEN, breaks
 from quatspline.instruments.continuity import jumps, measured_continuity
 from quatspline.instruments.fairness import fairness
 from quatspline.quaternion import FloatArray, distance
-from quatspline.registry import load, scheme, shipped
+from quatspline.runs.experiment import Run
 from quatspline.trajectories.sets import step_sets, torque_sets
 from toys import AXIS, Turn, turned
 

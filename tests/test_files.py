@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from quatspline.atomic import replacing
-from quatspline.trajectories.files import KeyframeFileError, Motion, read, write, writing
+from quatspline.motion.files import KeyframeFileError, Motion, read, write, writing
+from quatspline.system.atomic import replacing
 
 TIMES = np.array([0.0, 0.1, 1.0 / 3.0, 1305031102.175800085])
 QUATERNIONS = np.array([[1, 0, 0, 0], [0.8, 0.6, 0, 0], [0.6, 0, -0.8, 0], [0.5, 0.5, 0.5, -0.5]])

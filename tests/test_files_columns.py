@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from quatspline.trajectories.files import KeyframeFileError, Motion, read
+from quatspline.motion.files import KeyframeFileError, Motion, read
 
 ROWS = np.array([[0.0, 1, 2, 3, 0.8, 0.6, 0, 0], [1.0, 4, 5, 6, 0.36, 0.48, 0.64, 0.48]])
 """Times, positions, w, x, y, z: no two columns alike, so that none can be swapped unseen."""

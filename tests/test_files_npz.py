@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from numpy.lib import format as npy
 
-from quatspline.trajectories.files import KeyframeFileError, npz, read
+from quatspline.motion.files import KeyframeFileError, npz, read
 
 COUNT = 200
 TIMES = np.arange(COUNT) + np.random.default_rng(0).random(COUNT)

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import quatspline as qs
-from quatspline import numeric, quaternion
-from quatspline.families.tangents import CHART, SECANT, chart_velocities
+from quatspline import quaternion, stencil
+from quatspline.fitting.tangents import CHART, SECANT, chart_velocities
 
 GOLDEN = json.loads((Path(__file__).parent / "data" / "golden.json").read_text())
 Q = np.array(GOLDEN["meta"]["q"], dtype=float)
@@ -62,7 +62,7 @@ def test_c1_with_the_velocities_asked_for(window, turns):
         jump = np.abs(curve(inner + NEAR, order) - curve(inner - NEAR, order)).max()
         assert (jump < 1e-6) == smooth
     t = np.linspace(times[0], times[-1], 203)[1:-1]
-    velocity, acceleration = numeric.rates(
+    velocity, acceleration = stencil.rates(
         lambda s: curve(s + times[0]), t - times[0], times - times[0]
     )
     np.testing.assert_allclose(curve(t, 1), velocity, atol=1e-8)
@@ -104,7 +104,7 @@ def test_velocity_errors_fall_with_the_window(window):
         a = np.stack([0.8 * np.sin(1.1 * t), 0.6 * np.cos(0.7 * t), 0.5 * np.sin(1.7 * t + 1)], -1)
         return quaternion.exp(a)
 
-    exact = numeric.rates(motion, np.array([5.0]), np.array([0.0, 10.0]))[0][0]
+    exact = stencil.rates(motion, np.array([5.0]), np.array([0.0, 10.0]))[0][0]
     errors = []
     for count in (81, 161):
         t = np.linspace(0.0, 10.0, count)

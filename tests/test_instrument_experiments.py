@@ -7,11 +7,11 @@ import json
 import pandas as pd
 import pytest
 
-from quatspline import running
-from quatspline.experiment import Run, found
-from quatspline.registry import load
-from quatspline.report import style
-from quatspline.report.results import Results
+from quatspline.catalogue import load
+from quatspline.figures import style
+from quatspline.runs import running
+from quatspline.runs.experiment import Run, found
+from quatspline.runs.results import Results
 
 SCHEMES = ["slerp", "squad", "shoemake-bezier"]
 """One that is local, one with neighbours, and one that refuses uneven times."""

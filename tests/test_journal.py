@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from quatspline.journal import Kept, forget, key
-from quatspline.report.results import Results
+from quatspline.runs.journal import Kept, forget, key
+from quatspline.runs.results import Results
 
 resource = pytest.importorskip("resource")
 
@@ -136,8 +136,8 @@ def test_a_full_disk_when_a_journal_is_mended_costs_nothing(results: Results, pa
 
 KILLED = """
 import os, signal, sys
-from quatspline.journal import Kept
-from quatspline.report.results import Results
+from quatspline.runs.journal import Kept
+from quatspline.runs.results import Results
 
 folder, left = sys.argv[1], int(sys.argv[2])
 

@@ -11,8 +11,8 @@ import quatspline as qs
 from powers import powers
 from quatspline import quaternion
 from quatspline.curve import Curve
-from quatspline.families.block_tridiagonal import solve_block_tridiagonal
 from quatspline.families.cumulative import ANGLES
+from quatspline.fitting.block_tridiagonal import solve_block_tridiagonal
 from quatspline.quaternion import FloatArray
 from walks import walk
 

@@ -13,7 +13,7 @@ from scipy.interpolate import make_interp_spline
 from scipy.spatial.transform import Rotation
 
 import quatspline as qs
-from quatspline import numeric, quaternion
+from quatspline import quaternion, stencil
 from quatspline.quaternion import FloatArray
 from walks import apart, apart_up_to_sign, inside, loop, uneven, walk
 
@@ -112,7 +112,7 @@ def test_rates_and_joins(degree: int, kind: str) -> None:
     curve = qs.build("moving-frame", knots, q, degree=degree, **given)
     assert (curve.continuity, curve.order) == (degree - 1, degree + 1)
     t = inside(knots, 6)
-    for order, wanted in enumerate(numeric.rates(curve._orientation, t, knots), start=1):
+    for order, wanted in enumerate(stencil.rates(curve._orientation, t, knots), start=1):
         assert apart(curve(t, order), wanted) < (1e-7, 1e-6)[order - 1] * np.abs(wanted).max()
     left, right = np.nextafter(knots[1:-1], -1.0), knots[1:-1]
     for order in (1, 2):

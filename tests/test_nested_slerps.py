@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import quatspline as qs
-from quatspline import numeric, quaternion
+from quatspline import quaternion, stencil
 from quatspline.families import chords, nested
 
 GOLDEN = json.loads((Path(__file__).parent / "data" / "golden.json").read_text())
@@ -115,7 +115,7 @@ def test_rates_are_derivatives_and_knots_join(name, closing):
     curve = qs.build(name, times, q, closed=closed)
     period = times[-1] - times[0]
     t = np.linspace(times[0], times[-1], 203)[1:-1]
-    velocity, acceleration = numeric.rates(
+    velocity, acceleration = stencil.rates(
         lambda s: curve(s + times[0]), t - times[0], times - times[0]
     )
     np.testing.assert_allclose(curve(t, 1), velocity, atol=1e-8)

@@ -12,9 +12,11 @@ from pathlib import Path
 
 import pytest
 
-from quatspline import cli, comparing, experiment, registry
-from quatspline.atomic import ASIDE, naming
-from quatspline.report.results import Results
+from quatspline import catalogue, comparing
+from quatspline.cli import commands
+from quatspline.runs import experiment
+from quatspline.runs.results import Results
+from quatspline.system.atomic import ASIDE, naming
 
 KEYS = "t,qw,qx,qy,qz\n0,1,0,0,0\n1,0.8,0.6,0,0\n2,0.6,0.8,0,0\n3,0,1,0,0\n"
 EXPERIMENT = """
@@ -54,7 +56,7 @@ def refused(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch)
     def call(*arguments: str) -> str:
         with monkeypatch.context() as patch:
             patch.setattr(comparing, "_compared", measured)
-            assert cli.main(arguments) == 2
+            assert commands.main(arguments) == 2
         told = capsys.readouterr().err
         assert told.count("\n") == 1, told
         return told.removeprefix("quatspline: ").removesuffix("\n")
@@ -90,7 +92,7 @@ def test_compare_replaces_foreign_files_by_force_only(
     assert refused(*command).startswith("out/rates.svg: not written by quatspline in this folder")
     assert sorted(os.listdir(out)) == ["notes.md", "rates.svg"]
     for force in (["--force"], []):  # and then they are its own
-        assert cli.main([*command, *force]) == 0
+        assert commands.main([*command, *force]) == 0
     written = {*comparing.FILES} & set(os.listdir(out))
     assert set(json.loads((out / "manifest.json").read_text())["files"]) == written
     assert (out / "notes.md").read_text() == "precious"
@@ -129,7 +131,9 @@ def test_sample_never_writes_over_its_keyframes(desk: Path, refused: Refused, wa
 def test_sample_writes_over_the_file_that_it_is_told_to(desk: Path) -> None:
     (desk / "old.csv").write_text("old")
     assert (
-        cli.main(["sample", "compare.csv", "--scheme", "slerp", "--count", "2", "-o", "old.csv"])
+        commands.main(
+            ["sample", "compare.csv", "--scheme", "slerp", "--count", "2", "-o", "old.csv"]
+        )
         == 0
     )
     assert (desk / "old.csv").read_text().startswith("t,qw")
@@ -139,7 +143,7 @@ def test_sample_writes_over_the_file_that_it_is_told_to(desk: Path) -> None:
 
 
 def process(*arguments: str, **options: object) -> subprocess.Popen[str]:
-    environment = os.environ | {"PYTHONPATH": str(registry.PACKAGE.parent)}
+    environment = os.environ | {"PYTHONPATH": str(catalogue.PACKAGE.parent)}
     return subprocess.Popen(
         [sys.executable, "-m", "quatspline", *arguments],
         env=environment,
@@ -158,8 +162,8 @@ def test_run_replaces_foreign_files_by_force_only(desk: Path, refused: Refused, 
     (out / name).write_text("precious")
     assert refused("run", "told").startswith(f"results/{name}: not written by quatspline")
     assert not (desk / "measured").exists()
-    assert cli.main(["run", "told", "--force"]) == 0
-    assert cli.main(["run", "told"]) == 0
+    assert commands.main(["run", "told", "--force"]) == 0
+    assert commands.main(["run", "told"]) == 0
     assert (out / "README.md").read_text() == "of the clone"
 
 
@@ -179,7 +183,7 @@ def test_runs_at_once_in_one_folder_are_refused_and_lose_nothing(desk: Path) -> 
         assert text.count("\n") == 1
     assert first.returncode == 0, said
     assert (desk / "measured").read_text() == "."
-    assert cli.main(["run", "else"]) == 0
+    assert commands.main(["run", "else"]) == 0
     manifest = json.loads((desk / "results" / "manifest.json").read_text())
     assert set(manifest["experiments"]) == {"told", "else"}
     assert len(os.listdir(desk / "results")) == 1 + len(manifest["files"])
@@ -191,7 +195,7 @@ def test_a_full_disk_is_told_in_a_line(desk: Path) -> None:
     def little_room() -> None:
         resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
 
-    assert cli.main(["run", "told"]) == 0
+    assert commands.main(["run", "told"]) == 0
     before = (desk / "results" / "told.csv").read_bytes()
     with process("run", "told", "else", preexec_fn=little_room) as full:
         said = full.communicate()[1]
@@ -201,7 +205,7 @@ def test_a_full_disk_is_told_in_a_line(desk: Path) -> None:
     assert "Traceback" not in said
     assert (desk / "results" / "told.csv").read_bytes() == before
     assert "told" in json.loads((desk / "results" / "manifest.json").read_text())["experiments"]
-    assert cli.main(["run", "told", "else"]) == 0
+    assert commands.main(["run", "told", "else"]) == 0
 
 
 # -- streams ------------------------------------------------------------------------------------
@@ -218,7 +222,7 @@ COMMANDS = [
 
 def shell(redirected: str, *arguments: str) -> subprocess.CompletedProcess[str]:
     """The command as a shell runs it, with its streams redirected."""
-    environment = os.environ | {"PYTHONPATH": str(registry.PACKAGE.parent)}
+    environment = os.environ | {"PYTHONPATH": str(catalogue.PACKAGE.parent)}
     line = f'exec "$@" {redirected}'
     command = ["sh", "-c", line, "sh", sys.executable, "-m", "quatspline", *arguments]
     return subprocess.run(command, env=environment, capture_output=True, text=True)
@@ -273,7 +277,7 @@ def test_compare_writes_nothing_through_a_link_that_leads_nowhere(
     (desk / "out" / "compare.md").symlink_to("../missing.txt")
     command = ["compare", "compare.csv", "--schemes", "slerp", "--out", "out"]
     assert refused(*command).startswith("out/compare.md: not written by quatspline")
-    assert cli.main([*command, "--force"]) == 0
+    assert commands.main([*command, "--force"]) == 0
     assert not (desk / "missing.txt").exists()
     assert not (desk / "out" / "compare.md").is_symlink()
 
@@ -286,7 +290,7 @@ def test_the_recommendation_is_said_before_the_page_fails(
             raise OSError(errno.ENOSPC, "No space left on device")
 
     monkeypatch.setattr(Results, "figure", full)
-    assert cli.main(["compare", "compare.csv", "--schemes", "kim", "--out", "out"]) == 1
+    assert commands.main(["compare", "compare.csv", "--schemes", "kim", "--out", "out"]) == 1
     told = capsys.readouterr()
     assert told.out.startswith("Take kim: ")
     assert told.err == "quatspline: out/compare: cannot be written: No space left on device\n"

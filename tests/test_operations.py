@@ -12,10 +12,10 @@ from typing import Any
 import pandas as pd
 import pytest
 
+from quatspline.catalogue import load, scheme, shipped
 from quatspline.curve import Curve
-from quatspline.instruments.operations import executed, iterations, per_keyframe, per_sample
 from quatspline.options import declared
-from quatspline.registry import load, scheme, shipped
+from quatspline.timing.operations import executed, iterations, per_keyframe, per_sample
 from quatspline.trajectories.paper import CASES, SOLVE
 
 COUNTING = Path(__file__).parent / "counting.py"

@@ -14,24 +14,24 @@ import pandas as pd
 import pytest
 
 from pages import EVIL, Elements, scenes
-from quatspline import running
-from quatspline.cli import main
+from quatspline import page as page_module
+from quatspline.cli.commands import main
+from quatspline.figures.meshes import key_mesh
+from quatspline.findings import choosing, targets
+from quatspline.findings.findings import FINDINGS, findings, reader
+from quatspline.findings.quotes import EXPRESSIONS, Cell, Quote, said
 from quatspline.keyframes import prepare
+from quatspline.page import Scene, motion, write_page
+from quatspline.page.document import embedded
+from quatspline.page.glossary import GLOSSARY
+from quatspline.page.plots import scheme_look
+from quatspline.page.sections import RANKINGS, SECTIONS
+from quatspline.page.table1 import duration
 from quatspline.quaternion import exp
-from quatspline.report import choosing, targets
-from quatspline.report import page as page_module
-from quatspline.report.findings import FINDINGS, findings, reader
-from quatspline.report.page import Scene, motion, write_page
-from quatspline.report.page.document import embedded
-from quatspline.report.page.glossary import GLOSSARY
-from quatspline.report.page.plots import scheme_look
-from quatspline.report.page.sections import RANKINGS, SECTIONS
-from quatspline.report.page.table1 import duration
-from quatspline.report.quotes import EXPRESSIONS, Cell, Quote, said
-from quatspline.report.readme import REFERENCE
-from quatspline.report.results import Results
-from quatspline.report.shapes import key_mesh
+from quatspline.runs import running
+from quatspline.runs.results import Results
 from quatspline.trajectories.paper import CASES
+from tools.readme import REFERENCE
 
 LARGEST = 15_000_000
 """Bytes that the page may have."""

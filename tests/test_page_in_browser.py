@@ -14,10 +14,10 @@ import numpy as np
 import pytest
 
 from pages import EVIL, SCHEMES, Opened
-from quatspline.registry import scheme
-from quatspline.report.readme import REFERENCE
-from quatspline.report.results import Results
+from quatspline.catalogue import scheme
+from quatspline.runs.results import Results
 from quatspline.trajectories.paper import CASES
+from tools.readme import REFERENCE
 
 POSE = 1e-6
 """Rotation angle that a pose on the canvas may be off: samples are stored as 32-bit numbers."""

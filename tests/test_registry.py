@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 import quatspline as qs
-from quatspline import registry, scaffold
+from quatspline import catalogue
+from tools import new_scheme
 from walks import walk
 
 EXAMPLE = Path(__file__).parent / "data" / "example_package"
@@ -45,13 +46,13 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty folder that is looked through."""
     place = tmp_path / "mine"
     place.mkdir()
-    monkeypatch.setenv(registry.FOLDERS, str(place))
+    monkeypatch.setenv(catalogue.FOLDERS, str(place))
     return place
 
 
 def python(code: str, path: list[Path] | None = None, **environment: str) -> str:
     """What a fresh interpreter prints; warnings are errors there too."""
-    package = str(registry.PACKAGE.parent)
+    package = str(catalogue.PACKAGE.parent)
     paths = os.pathsep.join([package, *map(str, path or [])])
     done = subprocess.run(
         [sys.executable, "-W", "error", "-c", code],
@@ -73,7 +74,7 @@ def test_names_are_sorted_and_those_of_the_files() -> None:
     assert {"quartic", "quintic", "local-quintic", "slerp", "nielson"} <= set(names)
     for name in names:
         assert qs.scheme(name).name == name
-    assert not any(name.startswith("-") for name in registry.found())
+    assert not any(name.startswith("-") for name in catalogue.found())
 
 
 def test_class_and_build_are_the_same() -> None:
@@ -110,7 +111,7 @@ def test_a_file_is_a_scheme(folder: Path) -> None:
     curve = qs.build("half-turn", None, walk(4, 30.0))
     assert curve.name == "half-turn"
     assert curve(0.5).shape == (4,)
-    assert "helper" not in str(registry.found())
+    assert "helper" not in str(catalogue.found())
 
 
 def test_a_pickle_finds_a_file_by_name(folder: Path) -> None:
@@ -123,7 +124,7 @@ def test_a_pickle_finds_a_file_by_name(folder: Path) -> None:
         [sys.executable, "-c", code],
         input=data,
         capture_output=True,
-        env={**os.environ, "PYTHONPATH": str(registry.PACKAGE.parent)},
+        env={**os.environ, "PYTHONPATH": str(catalogue.PACKAGE.parent)},
         check=True,
     )
     assert done.stdout == b"(4,)"
@@ -145,7 +146,7 @@ def test_a_broken_file_does_not_take_others_down(folder: Path, text: str, reason
     (folder / "broken_one.py").write_text(text)
     (folder / "whole.py").write_text(HALF.format(name="Whole"))
     assert set(qs.schemes()) == others | {"whole"}
-    item = registry.found()["broken-one"]
+    item = catalogue.found()["broken-one"]
     assert item.scheme is None
     with pytest.raises(ValueError, match=f"scheme 'broken-one' cannot be used: .*{reason}"):
         qs.scheme("broken-one")
@@ -169,15 +170,17 @@ def test_several_folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
         place.mkdir()
         (place / f"from_{place.name}.py").write_text(HALF.format(name="Half"))
     missing = tmp_path / "missing"
-    monkeypatch.setenv(registry.FOLDERS, os.pathsep.join(map(str, [*places, missing, ""])))
+    monkeypatch.setenv(catalogue.FOLDERS, os.pathsep.join(map(str, [*places, missing, ""])))
     assert {"from-a", "from-b"} <= set(qs.schemes())
     assert qs.scheme("from-a") is not qs.scheme("from-b")
 
 
 def test_a_folder_named_twice_counts_once(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (folder / "once.py").write_text(HALF.format(name="Once"))
-    shipped = registry.shipped("baselines")
-    monkeypatch.setenv(registry.FOLDERS, os.pathsep.join([str(folder), f"{folder}/", str(shipped)]))
+    shipped = catalogue.shipped("baselines")
+    monkeypatch.setenv(
+        catalogue.FOLDERS, os.pathsep.join([str(folder), f"{folder}/", str(shipped)])
+    )
     assert "once" in qs.schemes()
 
 
@@ -203,9 +206,9 @@ def installed(tmp_path: Path) -> Path:
     import tomllib
 
     project = tomllib.loads((EXAMPLE / "pyproject.toml").read_text())["project"]
-    group = project["entry-points"][registry.ENTRY_POINTS]
+    group = project["entry-points"][catalogue.ENTRY_POINTS]
     lines = [f"{name} = {target}" for name, target in group.items()]
-    (info / "entry_points.txt").write_text("\n".join([f"[{registry.ENTRY_POINTS}]", *lines, ""]))
+    (info / "entry_points.txt").write_text("\n".join([f"[{catalogue.ENTRY_POINTS}]", *lines, ""]))
     return tmp_path
 
 
@@ -226,7 +229,7 @@ def test_a_broken_package_does_not_take_others_down(installed: Path) -> None:
     (installed / "quatspline_example.py").write_text("raise OSError('no library')")
     code = """
 import quatspline as qs
-from quatspline.registry import found
+from quatspline.catalogue import found
 print(found()["hold-example"].problem, "slerp" in qs.schemes())
 """
     assert python(code, [installed]) == "OSError: no library True"
@@ -236,7 +239,7 @@ def test_an_entry_point_that_is_no_scheme(installed: Path) -> None:
     (installed / "quatspline_example.py").write_text("Hold = 3")
     code = """
 import quatspline as qs
-from quatspline.registry import found
+from quatspline.catalogue import found
 print(found()["hold-example"].problem, "slerp" in qs.schemes())
 """
     assert python(code, [installed]) == "TypeError: no subclass of Curve: 3 True"
@@ -271,7 +274,7 @@ def test_names_stay_what_they_are(first: str) -> None:
 import quatspline as qs
 {first}
 assert qs.schemes() == qs.schemes()
-from quatspline.schemes.quartic import QuarticSpline
+from quatspline.proposed.quartic import QuarticSpline
 assert QuarticSpline is qs.QuarticSpline is qs.scheme("quartic")
 assert set(qs.__all__) <= set(dir(qs))
 print(callable(qs.schemes))
@@ -290,7 +293,7 @@ def test_unknown_attributes() -> None:
 
 
 def test_scaffold_writes_a_working_scheme(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert scaffold.main(["my_scheme", str(folder)]) == 0
+    assert new_scheme.main(["my_scheme", str(folder)]) == 0
     written = folder / "my_scheme.py"
     assert str(written) in capsys.readouterr().out
     assert "class MyScheme(Curve):" in written.read_text()
@@ -303,14 +306,14 @@ def test_scaffold_writes_a_working_scheme(folder: Path, capsys: pytest.CaptureFi
 
 def test_scaffold_passes_its_own_checks(folder: Path) -> None:
     """What `make check-baseline NAME=...` runs."""
-    scaffold.main(["my-checked", str(folder)])
+    new_scheme.main(["my-checked", str(folder)])
     tests = [str(Path(__file__).with_name(f"test_{name}.py")) for name in ("conformance", "claims")]
     options = ["-q", "-x", "-p", "no:cacheprovider", "-p", "no:randomly", "--scheme", "my_checked"]
     done = subprocess.run(
         [sys.executable, "-m", "pytest", *options, *tests, "-k", "my-checked"],
         capture_output=True,
         text=True,
-        env={**os.environ, "PYTHONPATH": str(registry.PACKAGE.parent)},
+        env={**os.environ, "PYTHONPATH": str(catalogue.PACKAGE.parent)},
         cwd=Path(__file__).parents[1],
         check=False,
     )
@@ -336,7 +339,7 @@ def test_scaffold_passes_its_own_checks(folder: Path) -> None:
 def test_scaffold_refuses(
     name: str, message: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert scaffold.main([name, str(folder)]) == 2
+    assert new_scheme.main([name, str(folder)]) == 2
     error = capsys.readouterr().err
     assert message in error
     assert error.count("\n") == 1
@@ -345,7 +348,7 @@ def test_scaffold_refuses(
 
 def test_scaffold_does_not_overwrite(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "precious.py").write_text("mine")
-    assert scaffold.main(["precious", str(folder)]) == 2
+    assert new_scheme.main(["precious", str(folder)]) == 2
     assert (folder / "precious.py").read_text() == "mine"
-    assert scaffold.main(["other", str(folder / "nowhere")]) == 2
+    assert new_scheme.main(["other", str(folder / "nowhere")]) == 2
     assert capsys.readouterr().err.count("\n") == 2

@@ -14,10 +14,10 @@ import pytest
 from matplotlib.figure import Figure
 
 import quatspline
-from quatspline.journal import Journal
-from quatspline.report import provenance as module
-from quatspline.report.manifest import sha256
-from quatspline.report.results import Results, markdown
+from quatspline.runs import provenance as module
+from quatspline.runs.journal import Journal
+from quatspline.runs.manifest import sha256
+from quatspline.runs.results import Results, markdown
 
 
 @pytest.fixture
@@ -103,7 +103,7 @@ def test_markdown_shows_four_digits() -> None:
 DRAW = """
 import sys
 from matplotlib.figure import Figure
-from quatspline.report.results import Results
+from quatspline.runs.results import Results
 figure = Figure()
 axes = figure.subplots()
 axes.plot([0, 1], [0, 1], label="a")

@@ -8,7 +8,7 @@ import quatspline as qs
 from powers import kept
 from quatspline.curve import Curve
 from quatspline.families.rotation_vector import PHI, ROTATION_VECTOR, SIZE
-from quatspline.primitives import NEAR
+from quatspline.kernels.scalars import NEAR
 from quatspline.quaternion import FloatArray
 from walks import spin
 

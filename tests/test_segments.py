@@ -9,8 +9,8 @@ import pytest
 
 import quatspline as qs
 from quatspline.curve import Curve
-from quatspline.families.driver import BATCH, LONG
-from quatspline.families.segments import CHUNK, LAZY, SegmentCurve
+from quatspline.kernels.driver import BATCH, LONG
+from quatspline.segments import CHUNK, LAZY, SegmentCurve
 from walks import apart, applies, walk
 
 ROUNDING = 1e-12

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from quatspline.report.shapes import KEY_PARTS, TEAPOT_PARTS, Mesh, key_mesh, teapot_mesh
-from quatspline.report.teapot import FloatArray, outer_points, patch_points, teapot_patches
+from quatspline.figures.meshes import KEY_PARTS, TEAPOT_PARTS, Mesh, key_mesh, teapot_mesh
+from quatspline.figures.teapot import FloatArray, outer_points, patch_points, teapot_patches
 
 # Published coordinates have at most five decimals: mirrored or turned they match to rounding.
 SAME = 1e-12

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 import quatspline as qs
-from quatspline import numeric, quaternion
-from quatspline._jit import compiled
-from quatspline.families import spherical_mean
+from quatspline import quaternion, stencil
+from quatspline.families import means
+from quatspline.kernels.jit import compiled
 from quatspline.quaternion import FloatArray
 from walks import apart, apart_up_to_sign, inside, loop, spin, uneven, walk
 
@@ -43,12 +43,12 @@ def test_golden() -> None:
 
 @compiled
 def _curvature(r):
-    return spherical_mean.curvature(r)
+    return means.curvature(r)
 
 
 @compiled
 def _slope(r):
-    return spherical_mean._slope(r, spherical_mean.curvature(r))
+    return means._slope(r, means.curvature(r))
 
 
 def test_coefficients_in_every_range() -> None:
@@ -74,7 +74,7 @@ def test_mean_solves_its_equation() -> None:
             p = quaternion.mul(walk(2, 90.0)[1], quaternion.exp(v))
             w = rng.uniform(size=4)
             w /= w.sum()
-            q = np.array(spherical_mean.mean(*(tuple(x) for x in p), tuple(w)))
+            q = np.array(means.mean(*(tuple(x) for x in p), tuple(w)))
             left = w @ quaternion.log(quaternion.mul(quaternion.conj(q), p))
             assert np.abs(left).max() < 1e-15
             assert abs(np.linalg.norm(q) - 1.0) < 1e-15
@@ -96,7 +96,7 @@ def test_rates_and_joins(kind: str) -> None:
     curve = build(knots, q, **given)
     assert apart(curve(knots[: len(q)]), curve.quaternions) < 1e-11
     t = inside(knots, 6)
-    for order, wanted in enumerate(numeric.rates(curve._orientation, t, knots), start=1):
+    for order, wanted in enumerate(stencil.rates(curve._orientation, t, knots), start=1):
         assert apart(curve(t, order), wanted) < (1e-8, 1e-6)[order - 1] * np.abs(wanted).max()
     left, right = np.nextafter(knots[1:-1], -1.0), knots[1:-1]
     for order in (1, 2):

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 import quatspline as qs
-from quatspline import stamps
+from quatspline.inputs import stamps
 from walks import apart, walk
 
 NOW = 1_650_000_000_000_000_000

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from quatspline.atomic import ASIDE
-from quatspline.locking import LOCK, sole_writer
-from quatspline.report import store
-from quatspline.report.results import Results
+from quatspline.runs import store
+from quatspline.runs.results import Results
+from quatspline.system.atomic import ASIDE
+from quatspline.system.locking import LOCK, sole_writer
 
 
 @pytest.fixture(autouse=True)
@@ -214,8 +214,8 @@ KILLS = """
 import itertools, os, shutil, signal, sys
 import filelock  # once for all forks
 from pathlib import Path
-from quatspline.report import store
-from quatspline.report.results import Results
+from quatspline.runs import store
+from quatspline.runs.results import Results
 
 store.provenance = lambda: {"versions": {"quatspline": "0"}}
 os.fsync = lambda descriptor: None  # a kill leaves what was written; only a power cut does not
@@ -297,7 +297,7 @@ def test_a_folder_that_cannot_be_written_is_told() -> None:
 HOLDER = """
 import sys, time
 from pathlib import Path
-from quatspline.locking import sole_writer
+from quatspline.system.locking import sole_writer
 with sole_writer(Path(sys.argv[1])):
     print("held", flush=True)
     time.sleep(600)
@@ -320,8 +320,8 @@ def test_the_lock_dies_with_its_process(folder: Path) -> None:
 WRITER = """
 import sys, time
 from pathlib import Path
-from quatspline.report import store
-from quatspline.report.results import Results
+from quatspline.runs import store
+from quatspline.runs.results import Results
 
 store.provenance = lambda: {"versions": {"quatspline": "0"}}
 folder, name, count = Path(sys.argv[1]), sys.argv[2], int(sys.argv[3])

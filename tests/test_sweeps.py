@@ -15,10 +15,11 @@ from typing import Any
 import pandas as pd
 import pytest
 
-from quatspline import experiment, registry, running, sweeps
-from quatspline.report.results import Results
-from quatspline.running import Run
-from quatspline.sweeps import Kept
+from quatspline import catalogue
+from quatspline.runs import experiment, running, sweeps
+from quatspline.runs.results import Results
+from quatspline.runs.running import Run
+from quatspline.runs.sweeps import Kept
 
 COUNT = 8
 SWEEP = """
@@ -121,7 +122,7 @@ def test_rows_do_not_depend_on_the_number_of_workers(bench: Bench) -> None:
 def test_rows_keep_every_bit_and_the_order_of_the_cells(bench: Bench) -> None:
     bench.experiment()
     results, run = Results(bench.out), Run(quick=True, seed=3)
-    module = registry.load(bench.folder / "swept.py", "experiment")
+    module = catalogue.load(bench.folder / "swept.py", "experiment")
     with sweeps.workers(2):
         table = sweeps.sweep("swept", module, run, Kept(results, "swept", "print"))
     again = sweeps.sweep("swept", module, run, Kept(results, "swept", "print"))
@@ -138,11 +139,11 @@ def test_workers_find_folders_named_after_they_started(
     assert bench.run(jobs=2) == []
     later = tmp_path / "later"
     later.mkdir()
-    monkeypatch.setenv(registry.FOLDERS, os.path.relpath(later))
+    monkeypatch.setenv(catalogue.FOLDERS, os.path.relpath(later))
     monkeypatch.setenv(experiment.FOLDERS, str(later))
     (later / "broken_scheme.py").write_text("raise RuntimeError('found')\n")
     text = "def cells(run): return [{'x': 1}, {'x': 2}]\ndef measure_cell(run, x):\n"
-    text += "    from quatspline.registry import found\n"
+    text += "    from quatspline.catalogue import found\n"
     text += "    return {'x': x, 'problem': found()['broken-scheme'].problem}\n"
     (later / "seen.py").write_text(text)
     assert running.run(["seen"], out=bench.out, jobs=2) == []
@@ -153,7 +154,7 @@ def test_workers_find_folders_named_after_they_started(
 HERE_ALONE = """import os
 if os.getpid() != {pid}:
     raise RuntimeError("only where it started")
-from quatspline.registry import scheme
+from quatspline.catalogue import scheme
 Scheme = type("Scheme", (scheme("slerp"),), {{"__module__": __name__}})
 """
 """A scheme that the process of the test can use, and no worker."""
@@ -174,11 +175,11 @@ def test_a_scheme_that_fails_on_a_worker_alone_makes_no_row(
     folder.mkdir()
     (folder / "here_alone.py").write_text(HERE_ALONE.format(pid=os.getpid()))
     (folder / "never.py").write_text("raise RuntimeError('nowhere')")
-    monkeypatch.setenv(registry.FOLDERS, str(folder))
+    monkeypatch.setenv(catalogue.FOLDERS, str(folder))
     (bench.folder / "swept.py").write_text(
         f"def cells(run): return [{cell} for name in ('squad', 'here-alone', 'never')]\n"
         "def measure_cell(run, **cell):\n"
-        "    from quatspline.registry import found\n"
+        "    from quatspline.catalogue import found\n"
         "    name, = cell.values()\n"
         "    return cell | {'failure': found()[name.strip('.')].problem}\n"
     )
@@ -199,13 +200,13 @@ def test_the_command_ends_with_status_1_where_a_worker_lost_cells(
     bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A scheme that no process can use is a row, and status 0."""
-    bench.experiment("from quatspline.registry import scheme; scheme('slerp')")
+    bench.experiment("from quatspline.catalogue import scheme; scheme('slerp')")
     (bench.folder / "never.py").write_text("raise RuntimeError('nowhere')")
-    monkeypatch.setenv(registry.FOLDERS, str(bench.folder))
+    monkeypatch.setenv(catalogue.FOLDERS, str(bench.folder))
     (bench.folder / "once.py").write_text(
         "import os, pathlib\n"
         "if (count := pathlib.Path(__file__).with_name('asked')).exists(): 1 / 0\n"
-        "count.touch()\n" + "from quatspline.registry import scheme\n"
+        "count.touch()\n" + "from quatspline.catalogue import scheme\n"
         "Scheme = type('Scheme', (scheme('slerp'),), {'__module__': __name__})\n"
     )
     for status in (1, 0):
@@ -382,9 +383,9 @@ def test_a_worker_of_several_threads_measures_one_cell_at_a_time(bench: Bench) -
     bench.experiment(
         """assert not (HERE / "inside").exists(), "two cells at once"
     (HERE / "inside").touch()
-    from quatspline.registry import found, schemes
+    from quatspline.catalogue import found, schemes
     assert len(schemes()) == """
-        + str(len(registry.schemes()))
+        + str(len(catalogue.schemes()))
         + """
     time.sleep(0.1)  # in which another thread would come
     (HERE / "inside").unlink()"""

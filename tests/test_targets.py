@@ -8,8 +8,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from quatspline.report import targets
-from quatspline.report.targets import ROTATION_SPLINE, Verdict
+from quatspline.findings import targets
+from quatspline.findings.targets import ROTATION_SPLINE, Verdict
 
 FILL = "`quartic`, a million sorted samples, over `out.fill` on the same output"
 PEER = f"set-up of `kim` to 1e-9 over `{ROTATION_SPLINE}`"

@@ -18,8 +18,9 @@ import pytest
 from numba import config
 
 import quatspline as qs
-from quatspline import _jit, registry
-from quatspline.families.peers import quiet
+from quatspline import catalogue
+from quatspline.kernels import jit
+from quatspline.peers.wrapping import quiet
 
 TRIAL = Path(__file__).parent / "robustness" / "threads.py"
 LATE = 1.0
@@ -54,7 +55,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty folder of schemes; modules beside it can be imported."""
     place = tmp_path / "schemes"
     place.mkdir()
-    monkeypatch.setenv(registry.FOLDERS, str(place))
+    monkeypatch.setenv(catalogue.FOLDERS, str(place))
     return place
 
 
@@ -83,7 +84,7 @@ def started(call: Callable[[], Any]) -> tuple[threading.Thread, list[Any]]:
 
 def python(folder: Path, code: str) -> str:
     """What a fresh interpreter prints that can import what lies beside a folder of schemes."""
-    paths = os.pathsep.join([str(registry.PACKAGE.parent), str(folder.parent)])
+    paths = os.pathsep.join([str(catalogue.PACKAGE.parent), str(folder.parent)])
     done = subprocess.run(
         [sys.executable, "-c", code],
         capture_output=True,
@@ -102,7 +103,7 @@ def python(folder: Path, code: str) -> str:
 def test_eight_threads_at_once_list_every_scheme() -> None:
     """A small part of the trial; the whole of it is run by hand."""
     command = [sys.executable, str(TRIAL), "--processes", "2", "--threads", "8", "--cold", "0"]
-    paths = {**os.environ, "PYTHONPATH": str(registry.PACKAGE.parent)}
+    paths = {**os.environ, "PYTHONPATH": str(catalogue.PACKAGE.parent)}
     done = subprocess.run(
         command, capture_output=True, text=True, env=paths, timeout=5 * STUCK, check=False
     )
@@ -117,7 +118,7 @@ def test_a_thread_waits_for_what_another_imports(folder: Path, gate: SimpleNames
     (folder / "broken.py").write_text("1 / 0")
     first, one = started(qs.schemes)
     assert gate.entered.wait(60)
-    others = [started(call) for call in (qs.schemes, lambda: qs.scheme("held"), registry.found)]
+    others = [started(call) for call in (qs.schemes, lambda: qs.scheme("held"), catalogue.found)]
     for thread, _ in others:
         thread.join(LATE)  # one that does not wait has ended by then, with less
     gate.go.set()
@@ -128,7 +129,7 @@ def test_a_thread_waits_for_what_another_imports(folder: Path, gate: SimpleNames
     assert "held" in listed
     assert {"slerp", "quartic"} <= set(listed)
     assert cls is qs.scheme("held")
-    assert everything is registry.found()
+    assert everything is catalogue.found()
     assert [name for name, item in everything.items() if item.scheme is None] == ["broken"]
 
 
@@ -136,24 +137,24 @@ def test_threads_load_one_module_and_whole(tmp_path: Path, gate: SimpleNamespace
     """Experiments are loaded alike; a file's name need not be one of Python's."""
     path = tmp_path / "an.odd-name.py"
     path.write_text("import gate\ngate.entered.set()\nassert gate.go.wait(60)\nTITLE = 'whole'\n")
-    first, one = started(lambda: registry.load(path, "experiment"))
+    first, one = started(lambda: catalogue.load(path, "experiment"))
     assert gate.entered.wait(60)
-    second, two = started(lambda: registry.load(path, "experiment").TITLE)
+    second, two = started(lambda: catalogue.load(path, "experiment").TITLE)
     second.join(LATE)
     gate.go.set()
     first.join(60)
     second.join(60)
     assert two == ["whole"]
-    assert one == [registry.load(path, "experiment")]
+    assert one == [catalogue.load(path, "experiment")]
 
 
 def test_a_file_that_fails_is_tried_again_by_the_next(tmp_path: Path) -> None:
     path = tmp_path / "mended.py"
     path.write_text("raise OSError('not yet')")
     with pytest.raises(OSError, match="not yet"):
-        registry.load(path, "experiment")
+        catalogue.load(path, "experiment")
     path.write_text("VALUE = 'there, and longer'")  # another size: no bytecode of the first one
-    assert registry.load(path, "experiment").VALUE == "there, and longer"
+    assert catalogue.load(path, "experiment").VALUE == "there, and longer"
 
 
 def test_a_scheme_may_list_schemes_as_it_is_imported(folder: Path) -> None:
@@ -206,7 +207,7 @@ def test_the_subpackage_is_never_in_the_function_s_place(folder: Path) -> None:
 import quatspline as qs
 import quatspline.schemes
 before = callable(qs.schemes)
-from quatspline.schemes.quartic import QuarticSpline
+from quatspline.proposed.quartic import QuarticSpline
 print(before, callable(qs.schemes), "slerp" in qs.schemes(), QuarticSpline is qs.QuarticSpline)
 """
     assert python(folder, code) == "True True True True"
@@ -228,9 +229,9 @@ def test_two_files_decorated_at_once_keep_their_cache_folders(tmp_path: Path) ->
         def decorate() -> bool:
             inside[place].set()
             meet()
-            return _jit.cache_folder(path) == config.CACHE_DIR
+            return jit.cache_folder(path) == config.CACHE_DIR
 
-        return _jit._cached(names["f"], decorate)
+        return jit._cached(names["f"], decorate)
 
     def first() -> bool:
         right = decorated(0, lambda: inside[1].wait(LATE))  # the other one must not come in
@@ -272,7 +273,7 @@ def test_peers_in_two_threads_leave_the_filters_of_warnings() -> None:
 
 PEER = """
 import pathlib, time
-from quatspline.families.peers import PeerCurve
+from quatspline.peers.wrapping import PeerCurve
 HERE = pathlib.Path(__file__).parent
 
 class Library(PeerCurve):
@@ -301,7 +302,7 @@ def test_two_processes_import_a_peer_one_after_the_other(folder: Path) -> None:
     first = f"import quatspline as qs\nqs.build('library', None, {both})"
     second = f"""
 import os, pathlib, time, quatspline as qs
-here = pathlib.Path(os.environ["{registry.FOLDERS}"])
+here = pathlib.Path(os.environ["{catalogue.FOLDERS}"])
 qs.scheme("library")
 until = time.monotonic() + 60.0
 while not (here / "inside").exists() and time.monotonic() < until:
@@ -352,7 +353,7 @@ thread.join(60)
             "lock.acquire()",
         ),
         (
-            "from quatspline.families.peers import quiet\n"
+            "from quatspline.peers.wrapping import quiet\n"
             "def peer():\n    with quiet():\n        gate.entered.set(); gate.go.wait(60)\n"
             "thread = threading.Thread(target=peer)\n"
             "thread.start(); assert gate.entered.wait(60)",

@@ -7,7 +7,9 @@ from typing import Any
 
 import pytest
 
-from quatspline import cli, comparing, experiment, running, words
+from quatspline import comparing
+from quatspline.cli import commands, words
+from quatspline.runs import experiment, running
 
 
 @pytest.fixture
@@ -53,14 +55,14 @@ def asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     ],
 )
 def test_compare_finds_its_file(asked: dict[str, Any], given: list[str]) -> None:
-    assert cli.main(["compare", *given]) == 0
+    assert commands.main(["compare", *given]) == 0
     assert asked["schemes"] == ["kim", "nlerp"]
     assert asked["keyframes"] == (2 if "--closed" in given else 3)
     assert asked["out"] == Path("d" if "d" in given else "k-compared")
 
 
 def test_a_schemes_name_is_no_file_beside_one(asked: dict[str, Any]) -> None:
-    assert cli.main(["compare", "--schemes", "kim", "slerp", "k.csv"]) == 0
+    assert commands.main(["compare", "--schemes", "kim", "slerp", "k.csv"]) == 0
     assert asked["schemes"] == ["kim", "slerp"]
     assert words.of_compare("slerp", [["slerp"]]) == ("slerp", ["slerp"])
 
@@ -92,7 +94,7 @@ def test_a_schemes_name_is_no_file_beside_one(asked: dict[str, Any]) -> None:
 def test_compare_tells_what_it_cannot_place(
     asked: dict[str, Any], given: list[str], sentence: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert cli.main(["compare", *given]) == 2
+    assert commands.main(["compare", *given]) == 2
     assert capsys.readouterr().err == f"quatspline: {sentence}\n"
     assert not asked
 
@@ -112,13 +114,13 @@ def test_compare_tells_what_it_cannot_place(
 def test_run_finds_its_experiments(
     asked: dict[str, Any], given: list[str], experiments: list[str]
 ) -> None:
-    assert cli.main(["run", *given]) == 0
+    assert commands.main(["run", *given]) == 0
     assert asked["schemes"] == ["kim", "nlerp"]
     assert asked["experiments"] == experiments
 
 
 def test_run_without_schemes_leaves_the_choice_open(asked: dict[str, Any]) -> None:
-    assert cli.main(["run", "table1"]) == 0
+    assert commands.main(["run", "table1"]) == 0
     assert (asked["schemes"], asked["experiments"]) == (None, ["table1"])
 
 
@@ -126,7 +128,7 @@ def test_an_experiment_called_like_a_scheme_is_told(
     asked: dict[str, Any], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(experiment, "found", lambda: {"slerp": Path("slerp.py")})
-    assert cli.main(["run", "--schemes", "kim", "slerp"]) == 2
+    assert commands.main(["run", "--schemes", "kim", "slerp"]) == 2
     assert "--schemes ... slerp: both a scheme and an experiment" in capsys.readouterr().err
-    assert cli.main(["run", "slerp", "--schemes", "kim", "slerp"]) == 0
+    assert commands.main(["run", "slerp", "--schemes", "kim", "slerp"]) == 0
     assert (asked["schemes"], asked["experiments"]) == (["kim", "slerp"], ["slerp"])

@@ -7,16 +7,14 @@ and a page show what was measured.  Start with ``quatspline.build``.
 from __future__ import annotations
 
 import importlib
-import sys
-from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from quatspline.catalogue import build, scheme, schemes
     from quatspline.comparing import compare
     from quatspline.curve import Curve
     from quatspline.keyframes import Keyframes
-    from quatspline.registry import build, scheme, schemes
-    from quatspline.schemes.quartic import QuarticSpline
+    from quatspline.proposed.quartic import QuarticSpline
     from quatspline.solving import ConvergenceError, SolveReport
 
 __version__ = "0.1.0"
@@ -26,11 +24,11 @@ _HOMES = {
     "SolveReport": "quatspline.solving",
     "ConvergenceError": "quatspline.solving",
     "Keyframes": "quatspline.keyframes",
-    "QuarticSpline": "quatspline.schemes.quartic",
-    "build": "quatspline.registry",
+    "QuarticSpline": "quatspline.proposed.quartic",
+    "build": "quatspline.catalogue",
     "compare": "quatspline.comparing",
-    "scheme": "quatspline.registry",
-    "schemes": "quatspline.registry",
+    "scheme": "quatspline.catalogue",
+    "schemes": "quatspline.catalogue",
 }
 
 __all__ = [
@@ -45,21 +43,6 @@ __all__ = [
     "scheme",
     "schemes",
 ]
-
-
-class _Package(ModuleType):
-    """This package, in which `schemes` is the function and never the subpackage of that name.
-
-    The import system binds a subpackage when its import ends.  Taken away later, it would stand there
-    for a moment in which other threads call it.
-    """
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        if not (name == "schemes" and isinstance(value, ModuleType)):
-            super().__setattr__(name, value)
-
-
-sys.modules[__name__].__class__ = _Package
 
 
 def __getattr__(name: str) -> Any:

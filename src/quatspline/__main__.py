@@ -2,6 +2,6 @@
 
 import sys
 
-from quatspline.cli import main
+from quatspline.cli.commands import main
 
 sys.exit(main())

@@ -14,25 +14,25 @@ from numpy.typing import ArrayLike
 
 from quatspline import keyframes as kf
 from quatspline import quaternion
+from quatspline.catalogue import scheme, schemes
 from quatspline.curve import Curve
-from quatspline.experiment import Run
 from quatspline.instruments.continuity import jumps, measured_continuity, rounding, speeds
 from quatspline.instruments.fairness import fairness
-from quatspline.instruments.own_times import timed
-from quatspline.instruments.practical import left_out
+from quatspline.instruments.rescue import solved
 from quatspline.instruments.trials import Row, attempted, facts
 from quatspline.keyframes import Keyframes
 from quatspline.options import declared
-from quatspline.registry import scheme, schemes
-from quatspline.rescue import solved
+from quatspline.runs.experiment import Run
 from quatspline.solving import ConvergenceError
-from quatspline.stdout import say
+from quatspline.system.stdout import say
+from quatspline.timing.own_times import timed
+from quatspline.timing.practical import left_out
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from quatspline.report.results import Results
-    from quatspline.trajectories.files import Motion
+    from quatspline.motion.files import Motion
+    from quatspline.runs.results import Results
 
 TOLERANCE = 1e-9
 """Of iterative schemes, in rad."""
@@ -238,9 +238,10 @@ def command(
     """
     import matplotlib as mpl
 
-    from quatspline.report import advice, compared, style
-    from quatspline.report.page import own_scene, write_page
-    from quatspline.report.page.sections import OWN
+    from quatspline.figures import comparison, style
+    from quatspline.findings import advice
+    from quatspline.page import own_scene, write_page
+    from quatspline.page.sections import OWN
 
     mpl.use("Agg")  # nothing here may open a window
 
@@ -254,8 +255,8 @@ def command(
     results.text("recommendation.md", advice.markdown(found))
     names = advice.shown(table)
     with style.house():
-        results.figure("compare", compared.bars(table))
-        results.figure("rates", compared.rates({name: curves[name] for name in names}, keyframes))
+        results.figure("compare", comparison.bars(table))
+        results.figure("rates", comparison.rates({name: curves[name] for name in names}, keyframes))
     results.text("compare.caption.txt", BARS)
     results.text("rates.caption.txt", RATES)
     entry = {"title": TITLE, "size": f"{keyframes.count} keyframes", "seed": None}

@@ -13,8 +13,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from quatspline import keyframes as kf
-from quatspline import numeric, options, quaternion, solving, stamps
-from quatspline.inputs import FloatArray, at, check_out, checked_threads, float_array, real_array
+from quatspline import options, quaternion, solving, stencil
+from quatspline.inputs import stamps
+from quatspline.inputs.arrays import (
+    FloatArray,
+    at,
+    check_out,
+    checked_threads,
+    float_array,
+    real_array,
+)
 from quatspline.solving import SolveReport
 
 if TYPE_CHECKING:
@@ -152,11 +160,11 @@ class Curve(abc.ABC):
 
     def _velocity(self, t: FloatArray) -> FloatArray:
         """Body angular velocity (m, 3) in rad per time; by default from `_orientation`."""
-        return numeric.rates(self._orientation, t, self._keyframes.knots)[0]
+        return stencil.rates(self._orientation, t, self._keyframes.knots)[0]
 
     def _acceleration(self, t: FloatArray) -> FloatArray:
         """Body angular acceleration (m, 3); by default from `_orientation`."""
-        return numeric.rates(self._orientation, t, self._keyframes.knots)[1]
+        return stencil.rates(self._orientation, t, self._keyframes.knots)[1]
 
     # -- what a user reads ----------------------------------------------------------------------
 
@@ -270,7 +278,7 @@ class Curve(abc.ABC):
         >>> spin.log(1).round(6)  # half the rotation vector
         array([0.      , 0.      , 1.570796])
         """
-        from quatspline.logcurve import log_curve
+        from quatspline.log_curve import log_curve
 
         samples, _ = self._taken(t)
         return log_curve(self.inner, self._keyframes, samples - self._origin, self(t))
@@ -443,6 +451,6 @@ class Curve(abc.ABC):
 
 
 def _rebuild(name: str, keyframes: kf.Keyframes, given: dict[str, Any]) -> Curve:
-    from quatspline.registry import scheme
+    from quatspline.catalogue import scheme
 
     return scheme(name).from_keyframes(keyframes, **given)

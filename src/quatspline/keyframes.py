@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from quatspline import stamps
-from quatspline._jit import compiled
-from quatspline.inputs import at, float_array, refuse_infinite, switch
-from quatspline.orientations import directions, explain_norms, orientations
+from quatspline.inputs import stamps
+from quatspline.inputs.arrays import at, float_array, refuse_infinite, switch
+from quatspline.inputs.orientations import directions, explain_norms, orientations
+from quatspline.inputs.stamps import shown
+from quatspline.kernels.jit import compiled
 from quatspline.quaternion import ANTIPODAL, FLIP, FloatArray
-from quatspline.stamps import shown
 
 NORM_TOLERANCE = 1e-3
 """Quaternions off the unit sphere by more than this are refused; within it they are normalised."""

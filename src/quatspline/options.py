@@ -15,7 +15,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_typ
 import numpy as np
 from numpy.typing import ArrayLike
 
-from quatspline.inputs import FloatArray, real_array, refuse_infinite
+from quatspline.inputs.arrays import FloatArray, real_array, refuse_infinite
 
 
 @dataclass(frozen=True)

@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from quatspline import primitives as p
-from quatspline._jit import compiled
-from quatspline.inputs import FloatArray
+from quatspline.inputs.arrays import FloatArray
+from quatspline.kernels import scalars as p
+from quatspline.kernels.jit import compiled
 
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from numba import carray
 
-from quatspline._jit import BLOCK, CONSTANTS, RESULT, ROWS, Kernel, inlined, sample_kernel
-from quatspline.families.segments import Family
-from quatspline.primitives import between, log_between, mul, polar, sincos, sincos_near
+from quatspline.kernels.jit import BLOCK, CONSTANTS, RESULT, ROWS, Kernel, inlined, sample_kernel
+from quatspline.kernels.scalars import between, log_between, mul, polar, sincos, sincos_near
+from quatspline.segments import Family
 
 SIZE = 9
 """Constants of an arc: a (4), b' (4), theta."""

@@ -14,8 +14,8 @@ from __future__ import annotations
 
 import math
 
-from quatspline._jit import CONSTANTS, RESULT, inlined
-from quatspline.primitives import log_between, mul, polar
+from quatspline.kernels.jit import CONSTANTS, RESULT, inlined
+from quatspline.kernels.scalars import log_between, mul, polar
 
 A, ASIDE, AXIS, SINE, COVERSINE, VERSINE = 0, 4, 8, 11, 12, 13
 """Constants of a chord: a (4), a n (4), n (3), sin(theta), 1 + cos(theta), 1 - cos(theta)."""

@@ -15,10 +15,10 @@ import math
 
 from numba import carray
 
-from quatspline._jit import BLOCK, CONSTANTS, RESULT, ROWS, compiled, inlined, sample_kernel
 from quatspline.families.nested import restored, set_rate, slerp_jet
-from quatspline.families.segments import Family
-from quatspline.primitives import sincos_any, slerp
+from quatspline.kernels.jit import BLOCK, CONSTANTS, RESULT, ROWS, compiled, inlined, sample_kernel
+from quatspline.kernels.scalars import sincos_any, slerp
+from quatspline.segments import Family
 
 # notation: the constants of a circle are P, X, Y (12) and the angle's phi_0, r, g.
 SIZE = 15

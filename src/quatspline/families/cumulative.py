@@ -13,18 +13,9 @@ from __future__ import annotations
 
 from numba import carray
 
-from quatspline._jit import (
-    BLOCK,
-    CONSTANTS,
-    RESULT,
-    ROWS,
-    Kernel,
-    inlined,
-    sample_kernel,
-)
-from quatspline.families.quintics import bound, from_powers, quintic, quintic_jet
-from quatspline.families.segments import Family
-from quatspline.primitives import (
+from quatspline.families.polynomials import bound, from_powers, quintic, quintic_jet
+from quatspline.kernels.jit import BLOCK, CONSTANTS, RESULT, ROWS, Kernel, inlined, sample_kernel
+from quatspline.kernels.scalars import (
     NEAR,
     SMALL,
     cross,
@@ -36,6 +27,7 @@ from quatspline.primitives import (
     sincos_small,
     unrotate,
 )
+from quatspline.segments import Family
 
 # notation: the constants of a segment are Q_0 (4), Q_0 n_1 (4), n_1, n_2, n_3 (9), and the six
 # constants of theta_1, theta_2, theta_3 as `quintics` has them (18).

@@ -19,11 +19,10 @@ import math
 
 from numba import carray
 
-from quatspline._jit import BLOCK, CONSTANTS, RESULT, ROWS, inlined, sample_kernel, whole
 from quatspline.families.arcs import SIZE as ARC_SIZE
 from quatspline.families.arcs import along
-from quatspline.families.segments import Family
-from quatspline.primitives import (
+from quatspline.kernels.jit import BLOCK, CONSTANTS, RESULT, ROWS, inlined, sample_kernel, whole
+from quatspline.kernels.scalars import (
     S1,
     S2,
     S3,
@@ -38,6 +37,7 @@ from quatspline.primitives import (
     sincos,
     slerp,
 )
+from quatspline.segments import Family
 
 PARAMETERS = 3 * ARC_SIZE
 """First of the six pairs (value at u = 0, slope) of x_0, x_1, x_2, y_0, y_1, z."""

@@ -21,11 +21,11 @@ import math
 
 from numba import carray
 
-from quatspline import primitives as sines
-from quatspline._jit import BLOCK, CONSTANTS, RESULT, ROWS, Kernel, inlined, sample_kernel
-from quatspline.families.quintics import hermite, quintic, quintic_jet
-from quatspline.families.segments import Family
-from quatspline.primitives import cross, mul, sinc, sinc_near
+from quatspline.families.polynomials import hermite, quintic, quintic_jet
+from quatspline.kernels import scalars as sines
+from quatspline.kernels.jit import BLOCK, CONSTANTS, RESULT, ROWS, Kernel, inlined, sample_kernel
+from quatspline.kernels.scalars import cross, mul, sinc, sinc_near
+from quatspline.segments import Family
 
 # notation: the constants of a segment are Q_0 (4), then for each component of phi the six constants
 # of `quintics` (18).

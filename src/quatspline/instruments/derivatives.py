@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from quatspline import numeric
+from quatspline import stencil
 from quatspline.curve import Curve
 from quatspline.quaternion import FloatArray
 
@@ -27,7 +27,7 @@ def rates(curve: Curve, t: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Angular velocity and acceleration (m, 3) at once: half the work where they are numerical."""
     if 1 in curve.orders and 2 in curve.orders:
         return curve(t, 1), curve(t, 2)
-    return numeric.rates(curve._orientation, curve.since(t), curve.keyframes.knots)
+    return stencil.rates(curve._orientation, curve.since(t), curve.keyframes.knots)
 
 
 def analytic(curve: Curve) -> bool:
@@ -52,7 +52,7 @@ def rates_since(curve: Curve, since: FloatArray) -> tuple[FloatArray, FloatArray
     """The same at times since the first keyframe: Unix times leave no digits inside a segment."""
     if closed_forms(curve):
         return curve.inner(since, 1)[:, 0], curve.inner(since, 2)[:, 0]
-    return numeric.rates(curve._orientation, since, curve.keyframes.knots)
+    return stencil.rates(curve._orientation, since, curve.keyframes.knots)
 
 
 def one_sided(

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from quatspline.catalogue import scheme, version
 from quatspline.curve import Curve
 from quatspline.instruments.derivatives import analytic
 from quatspline.quaternion import FloatArray
-from quatspline.registry import scheme, version
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -2,7 +2,7 @@
 
 9 = 4*2 + 1, 101 = 4*25 + 1 and 201 = 4*50 + 1 frames: the key has 5 keyframes, open.  12 = 6*2,
 150 = 6*25 and 300 = 6*50: the teapot has 6, a closed loop.  That is an inference.  The orientations
-are round numbers found by `quatspline.trajectories.search`, for which Nielson's iteration takes the
+are round numbers found by `tools.paper_search`, for which Nielson's iteration takes the
 paper's 16 and 40 steps.
 """
 
@@ -11,10 +11,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
+from quatspline import quaternion
 from quatspline.keyframes import Keyframes, prepare
 from quatspline.quaternion import FloatArray
-from quatspline.trajectories.search import orientations
 
 RECONSTRUCTED = (
     "The paper prints no keyframes: these are reconstructed, in round numbers, so that Nielson's "
@@ -102,3 +103,16 @@ TEAPOT = PaperCase(
 )
 
 CASES = {case.name: case for case in (KEY, TEAPOT)}
+
+
+def orientations(euler: FloatArray) -> FloatArray:
+    """Unit quaternions (..., 4) of yaw, pitch, roll (..., 3) in degrees."""
+    flat = Rotation.from_euler("ZYX", euler.reshape(-1, 3), degrees=True)
+    return flat.as_quat(scalar_first=True).reshape(*euler.shape[:-1], 4)
+
+
+def steps(quaternions: FloatArray, closed: bool) -> FloatArray:
+    """Rotation angles in degrees (K, segments) between neighbours of (K, n, 4)."""
+    after = np.roll(quaternions, -1, axis=1)
+    angles = np.degrees(quaternion.distance(quaternions, after))
+    return angles if closed else angles[:, :-1]

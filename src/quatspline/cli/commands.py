@@ -1,0 +1,233 @@
+"""The command line: list, run, compare, sample, report.
+
+Exit status: 0 done; 1 something unforeseen failed; 2 bad usage or bad input, told in one line on
+stderr; 130 interrupted.  Whatever is slow to import waits until a command needs it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import errno
+import os
+import sys
+import traceback
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from quatspline.cli.arguments import REFUSED, parser
+from quatspline.system.atomic import naming, same_file
+from quatspline.system.stdout import STDOUT, say
+
+if TYPE_CHECKING:
+    from quatspline.catalogue import Found
+    from quatspline.motion.files import Motion
+
+DONE, FAILED, INTERRUPTED = 0, 1, 130
+
+FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS}
+"""Errors that say all there is to say: a disk has no room, or may not be written any more."""
+
+CLAIMS: tuple[tuple[str, Callable[[Any], Any]], ...] = (
+    ("C^k", lambda s: f"C{s.continuity}"),
+    ("interpolates", lambda s: _yes(s.interpolates)),
+    ("order", lambda s: str(s.order)),
+    ("support", lambda s: "all" if s.support is None else str(s.support)),
+    ("constant rate", lambda s: s.constant_rate),
+    ("uneven times", lambda s: _yes(s.non_uniform)),
+    ("closes", lambda s: _yes(s.closable)),
+    ("iterates", lambda s: _yes(s.iterative)),
+    ("from", lambda s: s.peer or "quatspline"),
+    ("title", lambda s: s.title),
+)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run a command and return its exit status."""
+    given = list(sys.argv[1:] if argv is None else argv)
+    if sys.stderr is None:  # closed: print would take stdout in its place
+        sys.stderr = open(os.devnull, "w")  # noqa: SIM115
+    if sys.stdout is None:  # and the next file that is opened would get its number
+        return _told("standard output is closed: point it to a file or to /dev/null", REFUSED)
+    try:
+        arguments = parser().parse_args(given)
+        arguments.command = ["quatspline", *given]
+        status = COMMANDS[arguments.name](arguments)
+        with naming(STDOUT):
+            sys.stdout.flush()
+        return status
+    except SystemExit as stop:  # argparse: help, version, bad usage
+        return stop.code if isinstance(stop.code, int) else FAILED
+    except KeyboardInterrupt:
+        hint = ": the same command goes on where it stopped" if given[:1] == ["run"] else ""
+        return _told(f"interrupted{hint}", INTERRUPTED)
+    except BrokenPipeError:  # the reader has seen enough
+        _give_up_stdout()
+        return DONE
+    except ValueError as error:
+        return _told(str(error), REFUSED)
+    except Exception as error:
+        return _unforeseen(error)
+
+
+def _give_up_stdout() -> None:
+    """Have what it still holds go nowhere: Python flushes once more at exit."""
+    with suppress(OSError, ValueError):  # it may be no file of the system's
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _told(line: str, status: int) -> int:
+    _note(line)
+    return status
+
+
+def _note(line: str) -> None:
+    print(f"quatspline: {' '.join(line.split())}", file=sys.stderr)
+
+
+def _unforeseen(error: Exception) -> int:
+    from quatspline.solving import ConvergenceError
+
+    ours = isinstance(error, OSError) and error.filename == STDOUT
+    if ours:
+        _give_up_stdout()
+    if isinstance(error, OSError) and (ours or error.errno in FULL):
+        where = f"{error.filename}: " if error.filename is not None else ""
+        return _told(f"{where}cannot be written: {error.strerror}", FAILED)
+    if not isinstance(error, ConvergenceError):
+        traceback.print_exception(error)
+    return _told(f"{type(error).__name__}: {error}", FAILED)
+
+
+# -- commands -----------------------------------------------------------------------------------
+
+
+def _list(arguments: argparse.Namespace) -> int:
+    from quatspline import catalogue
+
+    items = list(catalogue.found().values())
+    rows = [["scheme", *(head for head, _ in CLAIMS)]]
+    rows += [[item.name, *_claims(item)] for item in items if item.scheme is not None]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    say("  ".join(map(str.ljust, row, widths)).rstrip() for row in rows)
+    unusable = [item for item in items if item.scheme is None]
+    say(f"{i.name.ljust(widths[0])}  n/a: {' '.join(str(i.problem).split())}" for i in unusable)
+    return DONE
+
+
+def _claims(item: Found) -> list[str]:
+    def cell(show: Callable[[Any], Any]) -> str:
+        with suppress(AttributeError):  # a claim that the file does not make
+            return str(show(item.scheme))
+        return "?"
+
+    return [cell(show) for _, show in CLAIMS]
+
+
+def _yes(claim: bool) -> str:
+    return "yes" if claim else "no"
+
+
+def _run(arguments: argparse.Namespace) -> int:
+    from quatspline.cli import words
+    from quatspline.runs import running
+
+    experiments, schemes = words.of_run(arguments.experiments, arguments.schemes)
+    failed = running.run(
+        experiments,
+        schemes=schemes,
+        size=arguments.size,
+        seed=arguments.seed,
+        out=arguments.out,
+        command=arguments.command,
+        jobs=arguments.jobs,
+        dask=arguments.dask,
+        force=arguments.force,
+    )
+    return FAILED if failed else DONE
+
+
+def _compare(arguments: argparse.Namespace) -> int:
+    from quatspline import comparing
+    from quatspline.cli import words
+    from quatspline.runs.results import Results
+
+    # A wrong name is told before a long file is read.
+    arguments.keyframes, schemes = words.of_compare(arguments.keyframes, arguments.schemes)
+    motion = _motion(arguments)
+    out = arguments.out or Path(f"{Path(arguments.keyframes).stem}-compared")
+    results = Results(out, force=arguments.force)
+    with results.writing():
+        results.guard(comparing.FILES, inputs=[arguments.keyframes])
+        return comparing.command(
+            motion,
+            schemes=schemes,
+            closed=arguments.closed,
+            results=results,
+            call=arguments.command,
+        )
+
+
+def _report(arguments: argparse.Namespace) -> int:
+    from quatspline import page
+
+    return page.command(arguments.out, open_it=arguments.open, force=arguments.force)
+
+
+def _sample(arguments: argparse.Namespace) -> int:
+    from quatspline import catalogue
+    from quatspline.cli.grid import sample_times
+    from quatspline.motion import files
+
+    catalogue.scheme(arguments.scheme)  # a wrong name is told before a long file is read
+    if arguments.file is not None:
+        files.check_suffix(arguments.file)
+        if same_file(arguments.keyframes, arguments.file):
+            raise ValueError(f"{arguments.file}: is read here, so it is not written over")
+    motion = _motion(arguments)
+    with _naming(arguments.keyframes):
+        curve = catalogue.build(
+            arguments.scheme, motion.times, motion.quaternions, closed=arguments.closed
+        )
+    times = sample_times(*curve.domain, arguments.rate, arguments.count)
+    samples = motion.sampled(times, curve(times))
+    if motion.unread:
+        _note(f"{arguments.keyframes}: not carried: {', '.join(map(repr, motion.unread))}")
+    if arguments.file is None:
+        with naming(STDOUT):
+            files.write_csv(sys.stdout, samples)
+    else:
+        files.write(arguments.file, samples)
+    return DONE
+
+
+def _motion(arguments: argparse.Namespace) -> Motion:
+    from quatspline.keyframes import prepare
+    from quatspline.motion import files
+
+    motion = files.read(arguments.keyframes)
+    with _naming(arguments.keyframes):
+        motion = motion.returning() if arguments.closed else motion.opened()
+        prepare(motion.times, motion.quaternions, closed=arguments.closed)
+    if motion.note:
+        _note(f"{arguments.keyframes}: {motion.note}")
+    return motion
+
+
+@contextmanager
+def _naming(path: str) -> Iterator[None]:
+    """What is wrong with the keyframes of a file is told with the file's name."""
+    try:
+        yield
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from error
+
+
+COMMANDS = {
+    "list": _list,
+    "run": _run,
+    "compare": _compare,
+    "sample": _sample,
+    "report": _report,
+}

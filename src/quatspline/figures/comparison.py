@@ -1,0 +1,66 @@
+"""Figures of a comparison on somebody's own keyframes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from quatspline.curve import Curve
+from quatspline.figures import style
+from quatspline.instruments.derivatives import shape_rates
+from quatspline.keyframes import Keyframes
+from quatspline.quaternion import FloatArray
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+CURVES = 4
+"""Schemes drawn over time."""
+SAMPLES = 2000
+
+
+def bars(table: pd.DataFrame) -> Figure:
+    """Torque over the least, a scheme a row, C2 filled, others hollow."""
+    rows = table[table["failure"].isna() & np.isfinite(table["torque_over_least"])]
+    rows = rows.sort_values("torque_over_least", ascending=False)
+    fig, panels = style.axes(style.COLUMN, 0.6 + 0.17 * max(len(rows), 3))
+    ax = panels[0, 0]
+    for height, (_, row) in enumerate(rows.iterrows()):
+        looks = style.scheme_style(str(row["scheme"])) | {"linestyle": ""}
+        face = {} if row["continuity"] >= 2 else {"markerfacecolor": "white"}
+        ax.plot(row["torque_over_least"], height, **(looks | face))
+    ax.set(xscale="log", xlabel="torque over the least", yticks=range(len(rows)))
+    ax.set_yticklabels(rows["scheme"])
+    return fig
+
+
+def rates(curves: Mapping[str, Curve], keyframes: Keyframes) -> Figure:
+    """Norms of angular velocity and acceleration over time of the curves that were measured, by name."""
+    fig, panels = style.axes(style.PAGE, 3.6, 2, 1, sharex=True)
+    t = _times(keyframes)
+    for name, curve in curves.items():
+        looks = style.scheme_style(name) | {"marker": ""}
+        for ax, rate in zip(panels[:, 0], shape_rates(curve, t), strict=True):
+            ax.plot(t - t[0], np.linalg.norm(rate, axis=-1), label=name, **looks)
+    for ax, label in zip(
+        panels[:, 0], (r"$|\omega|$ (rad/t)", r"$|\alpha|$ (rad/t$^2$)"), strict=True
+    ):
+        ax.set_ylabel(label)
+        if keyframes.count <= 60:
+            for knot in keyframes.knots:
+                ax.axvline(knot, color="#dddddd", lw=0.5, zorder=0)
+    panels[1, 0].set_xlabel("t since the first keyframe")
+    if curves:
+        style.legend_of(fig, panels[0, 0], CURVES)
+    return fig
+
+
+def _times(keyframes: Keyframes) -> FloatArray:
+    """Samples away from knots, where rates of some schemes jump."""
+    each = max(2, SAMPLES // len(keyframes.spacings))
+    u = (np.arange(each) + 0.5) / each
+    inner = keyframes.times[:-1, None] + keyframes.spacings[:, None] * u
+    return inner.reshape(-1)

@@ -1,0 +1,202 @@
+"""Findings: sentences made of table cells; every number in one is tied to the cells that it follows from."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from quatspline.findings import choosing
+from quatspline.findings.quotes import Cell, Ledger, Part, Quote, Reader, Span, said
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A sentence: text without a number of its own, and quotes."""
+
+    topic: str
+    parts: tuple[Part, ...]
+
+    @property
+    def text(self) -> str:
+        """The sentence as plain text."""
+        return "".join(map(str, self.parts))
+
+    @property
+    def quotes(self) -> tuple[Quote, ...]:
+        """Its numbers."""
+        return tuple(part for part in self.parts if isinstance(part, Quote))
+
+    @property
+    def cells(self) -> tuple[Cell, ...]:
+        """The cells that its numbers come from."""
+        return tuple(cell for quote in self.quotes for cell in quote.cells)
+
+
+def findings(read: Reader) -> list[Finding]:
+    """All findings that the tables at hand support, in the order of the page."""
+    found = []
+    for topic, sentence in FINDINGS:
+        try:
+            found.append(Finding(topic, sentence(Ledger(read))))
+        except (FileNotFoundError, LookupError):  # an experiment not run, or run for fewer cases
+            continue
+    return found + _decisions(read)
+
+
+def _decisions(read: Reader) -> list[Finding]:
+    try:
+        return [
+            Finding(choosing.TABLE, parts) for parts in choosing.decisions(read(choosing.TABLE))
+        ]
+    except (FileNotFoundError, LookupError):
+        return []
+
+
+def reader(folder: Path) -> Reader:
+    """Tables of a folder, each read once."""
+    from quatspline.runs.results import Results
+
+    tables: dict[str, pd.DataFrame] = {}
+
+    def read(name: str) -> pd.DataFrame:
+        if name not in tables:
+            tables[name] = Results(folder).read_table(name)
+        return tables[name]
+
+    return read
+
+
+ROWS = (("key", 101), ("key", 201), ("teapot", 150), ("teapot", 300))
+
+
+def _iterations(cell: Ledger) -> tuple[Part, ...]:
+    key: dict[str, Any] = {"case": "key", "frames": 101, "scheme": "nielson"}
+    pot: dict[str, Any] = {"case": "teapot", "frames": 150, "scheme": "nielson"}
+    key["protocol"] = pot["protocol"] = "per-frame"
+    return said(
+        "Nielson's iteration takes {key:d} steps for the key and {pot:d} for the teapot; the paper prints "
+        "{paper_key:.0f} and {paper_pot:.0f}. The keyframes are reconstructed so that it does, for the paper prints "
+        "none.",
+        key=cell("table1", "iterations", **key),
+        pot=cell("table1", "iterations", **pot),
+        paper_key=cell("table1", "paper_iterations", **key),
+        paper_pot=cell("table1", "paper_iterations", **pot),
+    )
+
+
+def _ratios(cell: Ledger, scheme: str, protocol: str, column: str = "ratio_to_quartic") -> Span:
+    where = {"scheme": scheme, "protocol": protocol}
+    found = (cell("table1", column, case=case, frames=frames, **where) for case, frames in ROWS)
+    cells = tuple(found)
+    return Quote(cells, "least"), Quote(cells, "most")
+
+
+def _protocol(cell: Ledger) -> tuple[Part, ...]:
+    where = {"scheme": "nielson", "protocol": "per-frame"}
+    counts = [cell("table1", "frames", case=case, frames=frames, **where) for case, frames in ROWS]
+    return said(
+        "The paper finds its quartic {paper:.3g} times faster than the B-spline. Solving anew for every frame, as it "
+        "does, we measure {slow:.3g} (key at {v0} and {v1} frames, teapot at {v2} and {v3}); solving once and then "
+        "evaluating, {fast:.3g}. The difference is protocol, the rest is the scheme.",
+        paper=_ratios(cell, "nielson", "per-frame", "paper_ratio"),
+        slow=_ratios(cell, "nielson", "per-frame"),
+        fast=_ratios(cell, "nielson", "solve-once"),
+        **_numbered(counts),
+    )
+
+
+def _newton(cell: Ledger) -> tuple[Part, ...]:
+    where = {"case": "teapot", "frames": 150, "scheme": "kim", "protocol": "per-frame"}
+    return said(
+        "The cumulative B-spline of Kim, Kim & Shin, solved by Newton's method ({steps:d} steps for the teapot), "
+        "costs {slow:.3g} times the quartic per frame and {fast:.3g} times solved once.",
+        steps=cell("table1", "iterations", **where),
+        slow=_ratios(cell, "kim", "per-frame"),
+        fast=_ratios(cell, "kim", "solve-once"),
+    )
+
+
+def _jump(cell: Ledger) -> tuple[Part, ...]:
+    def jump(scheme: str, case: str, column: str = "relative") -> Cell:
+        return cell("continuity", column, scheme=scheme, case=case, quantity="alpha")
+
+    even, uneven = "60 degrees, uniform", "60 degrees, uneven"
+    return said(
+        "The paper's baseline does not have what its title is about: Nielson's curve is C1, its acceleration jumps at "
+        "keyframes by {smooth:.1f} % of its size on random keyframes ({even}) and by {rough:.1f} % on uneven times "
+        "({uneven}), while the jumps of the quartic ({quartic:.0e}) and of the cumulative B-spline ({kim:.0e}) are "
+        "rounding.",
+        smooth=Quote((jump("nielson", even),), "percent"),
+        rough=Quote((jump("nielson", uneven),), "percent"),
+        even=jump("nielson", even, "case"),
+        uneven=jump("nielson", uneven, "case"),
+        quartic=jump("quartic", uneven),
+        kim=jump("kim", uneven),
+    )
+
+
+def _cubic_fall(cell: Ledger) -> tuple[Part, ...]:
+    where = {"scheme": "nielson", "quantity": "alpha"}
+    cases = [f"smooth motion, {n} keyframes" for n in (41, 81)]
+    jumps = tuple(cell("continuity", "jump", case=case, **where) for case in cases)
+    return said(
+        "On smooth motion that jump falls by a factor {fall:.1f} when the keyframe spacing is halved (third order).",
+        fall=Quote(jumps, "ratio"),
+    )
+
+
+def _orders(cell: Ledger) -> tuple[Part, ...]:
+    names = ("slerp", "quartic", "quintic", "kim", "nielson", "local-quintic")
+    coarse, fine = cell.values("accuracy", "keyframes", scheme="quartic", knots="uniform")[-2:]
+    where = {"knots": "uniform", "keyframes": fine}
+    slopes = [cell("accuracy", "slope", scheme=name, **where) for name in names]
+    return said(
+        "Interior orders on a smooth motion, read between {before} and {after} uniform keyframes: "
+        f"{_listed(names, '.2f')}. The paper's quartic converges no faster than slerp; with the second derivative of "
+        "the parabola through three keyframes (quintic) the same construction gains an order.",
+        before=cell("accuracy", "keyframes", scheme="quartic", knots="uniform", keyframes=coarse),
+        after=cell("accuracy", "keyframes", scheme="quartic", **where),
+        **_numbered(slopes),
+    )
+
+
+def _torque(cell: Ledger) -> tuple[Part, ...]:
+    names = ("nielson", "kim", "local-quintic", "scipy-rotation-spline", "squad", "quartic")
+    where = {"data": "committed"}
+    medians = [cell("fairness", "median", scheme=name, **where) for name in names]
+    return said(
+        "Torque energy over the least possible, median of {sets:d} committed keyframe sets: "
+        f"{_listed(names, '.4f')}. local-quintic is local and solves nothing.",
+        sets=cell("fairness", "sets", scheme="local-quintic", **where),
+        **_numbered(medians),
+    )
+
+
+FINDINGS: tuple[tuple[str, Callable[[Ledger], tuple[Part, ...]]], ...] = (
+    ("reproduction", _iterations),
+    ("protocol", _protocol),
+    ("protocol", _newton),
+    ("continuity", _jump),
+    ("continuity", _cubic_fall),
+    ("accuracy", _orders),
+    ("fairness", _torque),
+)
+
+
+def _listed(names: Sequence[str], spec: str) -> str:
+    """A template that names quantities v0, v1, ... after their schemes."""
+    return ", ".join(f"{name} {{v{i}:{spec}}}" for i, name in enumerate(names))
+
+
+def _numbered(cells: Sequence[Cell]) -> dict[str, Cell]:
+    return {f"v{i}": cell for i, cell in enumerate(cells)}
+
+
+def lines(folder: Path) -> Iterator[str]:
+    """The findings of a folder of tables as a Markdown list."""
+    for finding in findings(reader(folder)):
+        yield f"- {finding.text}"

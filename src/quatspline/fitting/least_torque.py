@@ -1,0 +1,257 @@
+"""The curve of least torque on a chain of rotation-vector segments, by Gauss-Newton.
+
+The unknowns are velocity and acceleration at every node, and turns of nodes between keyframes.
+With 8 Gauss points u_g a segment the sum
+
+    E = sum_s sum_g w_g h_s |alpha_s(u_g)|^2                                                     (1)
+
+is a sum of squares; its normal equations couple neighbouring nodes only: a band of 18 [barr1992].
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from quatspline.families.polynomials import quintic_jet
+from quatspline.families.rotation_vector import (
+    PHI,
+    SIZE,
+    coefficients,
+    half_acceleration,
+    inverse_jacobian,
+    set_base,
+    set_end_rates,
+)
+from quatspline.kernels.jit import CHANGE, ITERATIONS, REACH, compiled, inlined
+from quatspline.kernels.scalars import exp, log_between, mul, sinc
+
+# notation: log units; a node has q (4) and x = (v, a) (6), half the body velocity and acceleration;
+# y (15) holds a segment's L, h v_0, h^2 a_0, h v_1, h^2 a_1
+
+POINTS, WEIGHTS = (
+    0.5 * (x + k) for x, k in zip(np.polynomial.legendre.leggauss(8), (1, 0), strict=True)
+)
+"""Gauss quadrature on [0, 1]."""
+
+STEP = 2e-3
+"""Of central differences of order 4 over y, whose entries are of order one: truncation 1e-12 and
+rounding 1e-13."""
+
+SHIFTS, SHARES = np.array([-2.0, -1.0, 1.0, 2.0]), np.array([1.0, -8.0, 8.0, -1.0]) / (12.0 * STEP)
+
+ROUNDING = 1e-12
+"""A relative rise of E that is no rise."""
+
+BAND = 18
+"""Unknowns of a segment: two nodes with a turn, v and a each."""
+
+STALL, FLAT = 8, 1e-15
+"""Updates without a least change so far, and the share of E that the last of them would have gained by the gradient,
+which are rounding of the gradient: smaller changes cannot be had."""
+
+DAMPING, DAMPED, STUCK = 1e-4, 1e-3, 1e8
+"""Levenberg's weight: the first, the largest of a step that may end it, the one to give up at."""
+
+
+@compiled
+def _copy(source, target):
+    """Element by element: a slice assignment would compile numpy's broadcasting errors too."""
+    for i in range(source.size):
+        target[i] = source[i]
+
+
+@compiled
+def minimise(nodes, rates, h, m, tolerance, limit, segments, report):
+    """Minimise (1) for every track; fills segments and report, returns the energies, and which tracks came to
+    rest at rounding, at a change above the tolerance."""
+    energies, rest = np.empty(nodes.shape[0]), np.empty(nodes.shape[0], dtype=np.bool_)
+    for k in range(nodes.shape[0]):
+        energies[k], rest[k] = _minimise(nodes[k], rates[k], h, m, tolerance, limit, report[k])
+        for i in range(h.size):
+            q, y = nodes[k, i], np.empty(15)
+            _ends(nodes[k], rates[k], h, i, y)
+            set_base(segments[k], i, q[0], q[1], q[2], q[3])
+            report[k, REACH] = max(report[k, REACH], set_end_rates(segments[k], i, y))
+    return energies, rest
+
+
+@compiled
+def _minimise(q, x, h, m, tolerance, limit, report):
+    n = 9 * q.shape[0]
+    matrix, band, gradient, step = (
+        np.empty((n, BAND)),
+        np.empty((n, BAND)),
+        np.empty(n),
+        np.empty(n),
+    )
+    trial_q, trial_x = q.copy(), x.copy()
+    energy = _energy(q, x, h)
+    damping, change, done = 0.0, np.inf, 0
+    least, least_at, rest = np.inf, 0, False
+    while done < limit:
+        _normal_equations(q, x, h, m, matrix, gradient)
+        accepted = False
+        while not accepted and damping < STUCK:
+            _copy(matrix.ravel(), band.ravel())
+            for i in range(band.shape[0]):
+                band[i, 0] *= 1.0 + damping
+            _copy(gradient, step)
+            if _solve_band(band, step):
+                change = _move(q, x, h, step, trial_q, trial_x)
+                trial = _energy(trial_q, trial_x, h)
+                accepted = trial <= (1.0 + ROUNDING) * energy or change <= tolerance
+            if not accepted:
+                damping = max(10.0 * damping, DAMPING)
+        if not accepted:
+            change = np.inf
+            break
+        q[:], x[:], energy, done = trial_q, trial_x, trial, done + 1
+        if change <= tolerance and damping <= DAMPED:
+            break
+        if change < least:
+            least, least_at = change, done
+        rest = done - least_at >= STALL and abs(np.sum(gradient * step)) <= FLAT * energy
+        if rest:
+            break
+        damping = 0.1 * damping if damping > DAMPING else 0.0
+    report[ITERATIONS], report[CHANGE] = done, change
+    return energy, rest
+
+
+@inlined
+def _ends(q, x, h, i, y):
+    """y of segment i."""
+    a, b, k = q[i], q[i + 1], h[i]
+    y[0], y[1], y[2] = log_between(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3])
+    for c in range(3):
+        y[3 + c], y[6 + c] = k * x[i, c], k * k * x[i, 3 + c]
+        y[9 + c], y[12 + c] = k * x[i + 1, c], k * k * x[i + 1, 3 + c]
+
+
+@compiled
+def _residuals(y, h, scratch, r):
+    """sqrt(w_g h) alpha(u_g) of a segment, r (24,)."""
+    set_end_rates(scratch, 0, y)
+    f = scratch[0, PHI:].copy().reshape(3, 6).T
+    p, d, e = np.empty(3), np.empty(3), np.empty(3)
+    for g in range(POINTS.size):
+        u = POINTS[g]
+        for c in range(3):
+            p[c], d[c], e[c] = quintic_jet(f, 0, c, u)
+        z = p[0] * p[0] + p[1] * p[1] + p[2] * p[2]
+        s, c0 = sinc(z)
+        a, b, a1, b1 = coefficients(z, s, c0)
+        k = 2.0 * math.sqrt(WEIGHTS[g] / (h * h * h))
+        x = half_acceleration(a, b, a1, b1, p[0], p[1], p[2], d[0], d[1], d[2], e[0], e[1], e[2])
+        for c in range(3):
+            r[3 * g + c] = k * x[c]
+
+
+@compiled
+def _energy(q, x, h):
+    """(1)."""
+    y, r, scratch = np.empty(15), np.empty(24), np.empty((1, SIZE))
+    total = 0.0
+    for i in range(h.size):
+        _ends(q, x, h, i, y)
+        _residuals(y, h[i], scratch, r)
+        total += np.sum(r * r)
+    return total
+
+
+@compiled
+def _normal_equations(q, x, h, m, matrix, gradient):
+    """J^T J, row i and column i - d at [i, d], and -J^T r; the turns of keyframes are fixed."""
+    matrix.fill(0.0)
+    gradient.fill(0.0)
+    y, r, scratch = np.empty(15), np.empty(24), np.empty((1, SIZE))
+    jacobian = np.empty((BAND, 24))
+    for i in range(h.size):
+        _ends(q, x, h, i, y)
+        _residuals(y, h[i], scratch, r)
+        _jacobian(y, h[i], scratch, jacobian)
+        for a in range(BAND):
+            row = 9 * i + a
+            gradient[row] -= np.sum(jacobian[a] * r)
+            for b in range(a + 1):
+                matrix[row, a - b] += np.sum(jacobian[a] * jacobian[b])
+    for row in range(gradient.size):
+        if row % 9 < 3 and (row // 9) % m == 0:
+            gradient[row] = 0.0
+            for d in range(BAND):
+                matrix[row, d] = 0.0
+                if row + d < gradient.size:
+                    matrix[row + d, d] = 0.0
+            matrix[row, 0] = 1.0
+
+
+@compiled
+def _jacobian(y, h, scratch, jacobian):
+    """Derivatives of the residuals by the turns, v and a of both nodes, (18, 24)."""
+    r, by_y = np.empty(24), np.zeros((15, 24))
+    for c in range(15):
+        keep = y[c]
+        for k in range(4):
+            y[c] = keep + SHIFTS[k] * STEP
+            _residuals(y, h, scratch, r)
+            by_y[c] += SHARES[k] * r
+        y[c] = keep
+    for c in range(3):
+        # dL = Jr^-1(2 L) d(turn of the second), -Jr^-1(-2 L) d(turn of the first)
+        e0, e1, e2 = 1.0 * (c == 0), 1.0 * (c == 1), 1.0 * (c == 2)
+        a = inverse_jacobian(-y[0], -y[1], -y[2], e0, e1, e2)
+        b = inverse_jacobian(y[0], y[1], y[2], e0, e1, e2)
+        jacobian[c] = -(a[0] * by_y[0] + a[1] * by_y[1] + a[2] * by_y[2])
+        jacobian[9 + c] = b[0] * by_y[0] + b[1] * by_y[1] + b[2] * by_y[2]
+        jacobian[3 + c], jacobian[6 + c] = h * by_y[3 + c], h * h * by_y[6 + c]
+        jacobian[12 + c], jacobian[15 + c] = h * by_y[9 + c], h * h * by_y[12 + c]
+
+
+@compiled
+def _solve_band(a, b):
+    """Cholesky's solution in place, a in lower band form; False where a is not definite."""
+    n = b.size
+    for i in range(n):
+        for d in range(min(i, BAND - 1), -1, -1):
+            j = i - d
+            total = a[i, d]
+            for k in range(max(0, i - BAND + 1, j - BAND + 1), j):
+                total -= a[i, i - k] * a[j, j - k]
+            if d > 0:
+                a[i, d] = total / a[j, 0]
+            elif total > 0.0:
+                a[i, 0] = math.sqrt(total)
+            else:
+                return False
+        for d in range(1, min(i, BAND - 1) + 1):
+            b[i] -= a[i, d] * b[i - d]
+        b[i] /= a[i, 0]
+    for i in range(n - 1, -1, -1):
+        b[i] /= a[i, 0]
+        for d in range(1, min(i, BAND - 1) + 1):
+            b[i - d] -= a[i, d] * b[i]
+    return True
+
+
+@compiled
+def _move(q, x, h, step, new_q, new_x):
+    """Nodes after a step; returns its relative change, rates counted per segment and q as 1."""
+    moved, size = 0.0, float(q.shape[0])
+    for i in range(q.shape[0]):
+        k = h[min(i, h.size - 1)]
+        s = step[9 * i : 9 * i + 9]
+        e = exp(s[0], s[1], s[2])
+        a = mul(q[i, 0], q[i, 1], q[i, 2], q[i, 3], e[0], e[1], e[2], e[3])
+        norm = math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2] + a[3] * a[3])
+        for c in range(4):
+            new_q[i, c] = a[c] / norm
+        for c in range(3):
+            new_x[i, c] = x[i, c] + s[3 + c]
+            new_x[i, 3 + c] = x[i, 3 + c] + s[6 + c]
+            v, w = k * s[3 + c], k * k * s[6 + c]
+            moved += s[c] * s[c] + v * v + w * w
+            v, w = k * new_x[i, c], k * k * new_x[i, 3 + c]
+            size += v * v + w * w
+    return math.sqrt(moved / size)

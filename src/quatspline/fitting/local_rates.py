@@ -1,0 +1,216 @@
+"""Velocity and acceleration at every keyframe from its neighbours: local splines in local charts.
+
+In the chart x_j = ln(q_i^-1 q_j) centred at a keyframe, derivatives are body rates (in log units).
+A cubic spline through the points within m keyframes gives both; nothing global is solved.  Two
+facts make this cheap.  ln(q_i^-1 q_{i+k}) = -ln(q_{i+k}^-1 q_i), so that m logarithms a keyframe
+serve both sides; and each side of a spline, eliminated from its far end, acts on the centre by one
+relation v = r - p a only, so that two sides give v and a by one division.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from quatspline.kernels.jit import inlined
+from quatspline.kernels.scalars import TINY, between
+
+# notation: log units throughout (half rotation vectors), h_j spacings, m the window, v and a the
+# velocity and the acceleration at a keyframe
+
+START, STOP = math.radians(240) / 2, math.radians(340) / 2
+"""Half angles away from a keyframe between which a window gives way to the next smaller one: the
+chart folds at a full turn, and a window cut off at once would make the curve jump with its data."""
+
+# atan(x)/x = 1 + A1 x^2 + A2 x^4 + ... for |x| <= tan(pi/8), near-minimax (Chebyshev nodes,
+# computed in 50 digits): error 7e-18
+A1, A2, A3, A4 = -0.3333333333333333, 0.1999999999999552, -0.14285714284666542, 0.11111111015256361
+A5, A6, A7, A8 = -0.09090904578123903, 0.07692183190826087, -0.06664511447381948, 0.0585814891280221
+A9, A10, A11 = -0.0508544973794026, 0.03923165829558719, -0.01917688711906226
+
+
+@inlined
+def log_scale(w, l2):
+    """theta / l and theta = atan2(l, w), l^2 = l2: turns a vector part into a logarithm.
+
+    Of -1, whose logarithm has a length but no direction, theta = pi and theta / l is finite.
+    Two halvings of the angle bring it below pi/8, without a branch, so that loops vectorise.
+    """
+    length = math.sqrt(l2)
+    g = 1.0 / (math.sqrt(w * w + l2) + abs(w))  # tan(theta/2) / l
+    t = length * g
+    g = g / (1.0 + math.sqrt(1.0 + t * t))  # tan(theta/4) / l
+    s = l2 * g * g
+    p = ((((A11 * s + A10) * s + A9) * s + A8) * s + A7) * s + A6
+    p = ((((p * s + A5) * s + A4) * s + A3) * s + A2) * s + A1
+    scale = 4.0 * (g * (p * s) + g)
+    theta = length * scale
+    if w < 0.0:
+        return math.pi / (length + TINY) - scale, math.pi - theta
+    return scale, theta
+
+
+@inlined
+def continued(q, h, closed, sign, m):
+    """Keyframes and spacings with, closed, m more on either side, so that no index wraps."""
+    pad = m if closed else 0
+    n = q.shape[0]
+    points, gaps = np.empty((n + 2 * pad, 4)), np.empty(h.size + 2 * pad)
+    for i in range(gaps.size):
+        gaps[i] = h[(i - pad) % h.size]
+    for i in range(points.shape[0]):
+        s = sign if ((i - pad) // n) % 2 == 1 else 1.0
+        for c in range(4):
+            points[i, c] = s * q[(i - pad) % n, c]
+    return points, gaps
+
+
+@inlined
+def chords(q, result):
+    """ln(q_i^-1 q_{i+k}) into result (m, 4, n): x, y, z and the length, k = 1 ... m."""
+    for k in range(1, min(result.shape[0] + 1, q.shape[0])):
+        inside = q.shape[0] - k
+        x, y, z = result[k - 1, 0], result[k - 1, 1], result[k - 1, 2]
+        length = result[k - 1, 3]
+        p, r = q[:inside], q[k:]
+        for i in range(inside):
+            length[i], x[i], y[i], z[i] = between(
+                p[i, 0], p[i, 1], p[i, 2], p[i, 3], r[i, 0], r[i, 1], r[i, 2], r[i, 3]
+            )
+        _logs(length[:inside], x, y, z)
+
+
+@inlined
+def _logs(w, x, y, z):
+    """The logarithms of (w, x, y, z) in place, their lengths for w; the loop vectorises."""
+    for i in range(w.size):
+        l2 = x[i] * x[i] + y[i] * y[i] + z[i] * z[i]
+        scale, theta = log_scale(w[i], l2)
+        x[i] *= scale
+        y[i] *= scale
+        z[i] *= scale
+        w[i] = theta
+
+
+@inlined
+def _point(chords, i, j, side):
+    """x_j of the chart at keyframe i, j >= 1 keyframes after it (side 1) or before it (-1)."""
+    k = i if side > 0 else i - j
+    x = chords[j - 1]
+    return side * x[0, k], side * x[1, k], side * x[2, k]
+
+
+@inlined
+def _gap(h, i, j, side):
+    """The spacing between the keyframes j and j + 1 after keyframe i, or before it."""
+    return h[i + j if side > 0 else i - 1 - j]
+
+
+@inlined
+def _half(chords, h, i, k, side, natural):
+    """The k keyframes on one side of keyframe i as a relation v = r - p a: (p, r).
+
+    Elimination of the spline's second derivatives M_j from the far end towards M_0 = a.  On the
+    side before i, time runs backwards: v is to be negated.
+    """
+    e, gx, gy, gz = 0.0, 0.0, 0.0, 0.0  # M_{j+1} = g + e M_j; natural: M_k = 0
+    outer = _gap(h, i, k - 1, side)
+    sx, sy, sz = _point(chords, i, k, side)
+    for j in range(k - 1, 0, -1):
+        inner = _gap(h, i, j - 1, side)
+        x, y, z = _point(chords, i, j, side)
+        wx, wy, wz = 0.0, 0.0, 0.0
+        if j > 1:
+            wx, wy, wz = _point(chords, i, j - 1, side)
+        below = inner
+        if j == k - 1 and not natural:
+            # not-a-knot: M_k = (1 + ratio) M_{k-1} - ratio M_{k-2}
+            ratio = outer / inner
+            e = 1.0 + ratio
+            below -= ratio * outer
+        f, g = 6.0 / outer, 6.0 / inner
+        pivot = 1.0 / (2.0 * (inner + outer) + outer * e)
+        gx = (f * (sx - x) - g * (x - wx) - outer * gx) * pivot
+        gy = (f * (sy - y) - g * (y - wy) - outer * gy) * pivot
+        gz = (f * (sz - z) - g * (z - wz) - outer * gz) * pivot
+        e = -below * pivot
+        outer, sx, sy, sz = inner, x, y, z
+    c, d = 1.0 / outer, outer / 6.0
+    return d * (2.0 + e), c * sx - d * gx, c * sy - d * gy, c * sz - d * gz
+
+
+@inlined
+def _window(chords, h, closed, i, k):
+    """v and a at keyframe i by the spline through k keyframes on either side."""
+    before, after, start, stop = _extent(h, closed, i, k)
+    p, x, y, z, r, a, b, c = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    if after > 0:
+        p, x, y, z = _half(chords, h, i, after, 1, stop or after < 2)
+    if before > 0:
+        r, a, b, c = _half(chords, h, i, before, -1, start or before < 2)
+    if before == 0 or after == 0:
+        return x - a, y - b, z - c, 0.0, 0.0, 0.0
+    f = 1.0 / (p + r)
+    return (
+        f * (r * x - p * a),
+        f * (r * y - p * b),
+        f * (r * z - p * c),
+        f * (x + a),
+        f * (y + b),
+        f * (z + c),
+    )
+
+
+@inlined
+def _extent(h, closed, i, k):
+    """Keyframes before and after keyframe i in its window k; whether it meets a curve's ends."""
+    if closed:
+        return k, k, False, False
+    left, right = i, h.size - i
+    return min(k, left), min(k, right), k >= left, k >= right
+
+
+@inlined
+def _turned(chords, h, closed, i, k):
+    """A bound of the half angle from keyframe i to any point on the arcs joining its window.
+
+    On an arc of length s with ends at distances a and b none is farther than (a + b + s) / 2.
+    """
+    before, after, _, _ = _extent(h, closed, i, k)
+    bound, near = 0.0, 0.0
+    for j in range(after):
+        far = chords[j, 3, i]
+        bound = max(bound, near + far + chords[0, 3, i + j])
+        near = far
+    near = 0.0
+    for j in range(before):
+        far = chords[j, 3, i - 1 - j]
+        bound = max(bound, near + far + chords[0, 3, i - 1 - j])
+        near = far
+    return 0.5 * bound
+
+
+@inlined
+def local_rates(chords, h, closed, i, rates):
+    """v and a at keyframe i: the nested windows, each with its share of what wider ones left.
+
+    rates (6,); chords and h as `continued` and `chords` leave them, i counted there.
+    """
+    left = 1.0
+    for c in range(6):
+        rates[c] = 0.0
+    for k in range(chords.shape[0], 0, -1):
+        passed = 0.0
+        if k > 1:
+            xi = (_turned(chords, h, closed, i, k) - START) / (STOP - START)
+            xi = min(max(xi, 0.0), 1.0)
+            passed = xi * xi * xi * (10.0 - xi * (15.0 - 6.0 * xi))
+        if passed < 1.0:
+            share = left * (1.0 - passed)
+            w = _window(chords, h, closed, i, k)
+            for c in range(6):
+                rates[c] += share * w[c]
+        left *= passed
+        if left == 0.0:
+            break

@@ -1,0 +1,298 @@
+"""The compiled driver of all segment curves: times in, blocks of samples to a kernel, results out.
+
+A batch of samples is located first: the local parameter u and the segment of each, and the blocks
+that it falls into.  Neighbouring samples of one segment form a block that needs that segment's
+constants once (sorted samples); where segments change every few samples, a mixed block gathers
+constants sample by sample.  Then every track evaluates all blocks of the batch.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import carray
+
+from quatspline.kernels.jit import (
+    BLOCK,
+    CONSTANTS,
+    REACH,
+    RESULT,
+    ROWS,
+    at_address,
+    call_fit,
+    call_sample,
+    compiled,
+    inlined,
+    on_stack,
+)
+from quatspline.quaternion import FloatArray, IntArray
+
+BATCH = 1024
+"""Samples located at once, before their tracks are evaluated: within the first-level cache."""
+
+LONG = 16
+"""Samples of one segment in a row that are worth a block of their own."""
+
+SHEET = ROWS * BLOCK
+BLOCKS = BATCH // LONG + 2
+"""The most blocks that a batch falls into: all but the last are long or mixed and full."""
+
+MIXED = -1
+"""In the place of a block's segment: its samples lie in several."""
+
+INSIDE = -1
+"""In the place of the first bad index: all samples lie in the domain."""
+
+KNOTS, COUNT, SEGMENTS, TRACKS, CONSTANT_COUNT, SIGNS, CLOSED = range(7)
+
+
+def described(knots: FloatArray, segments: FloatArray, signs: FloatArray, closed: bool) -> IntArray:
+    """A curve as the driver takes it: addresses and lengths of its arrays, which must be kept alive.
+
+    knots (count + 1,) since the first keyframe, segments (K, count, constants), signs (K,).
+
+    Raises
+    ------
+    ValueError
+        Where they do not fit together: arrays made of addresses have no bounds that anything checks.
+    """
+    shapes = knots.shape, segments.shape[:2], signs.shape
+    if shapes != ((segments.shape[1] + 1,), (signs.size, segments.shape[1]), (signs.size,)):
+        raise ValueError(f"knots, segments and signs have shapes {shapes}: they do not fit")
+    for array in (knots, segments, signs):
+        if array.dtype != np.float64 or not array.flags.c_contiguous:
+            raise ValueError("knots, segments and signs: C-contiguous float64 is expected")
+    places = np.empty(CLOSED + 1, np.int64)
+    _describe(knots, segments, signs, closed, places)
+    return places
+
+
+@compiled
+def _describe(knots, segments, signs, closed, places):
+    places[KNOTS], places[SEGMENTS] = knots.ctypes.data, segments.ctypes.data
+    places[SIGNS], places[CLOSED] = signs.ctypes.data, closed
+    places[TRACKS], places[COUNT], places[CONSTANT_COUNT] = segments.shape
+
+
+@compiled
+def fit_tracks(address, tracks, h, closed, signs, parameters, segments, report):
+    """Call a fit kernel on every track (K, n, 4); the largest reach that they report."""
+    reach = 0.0
+    if not tracks.shape[0] == segments.shape[0] == report.shape[0] == signs.size:
+        raise ValueError("tracks, segments, report and signs: one of each per track is expected")
+    if segments.shape[1] % h.size or tracks.shape[1] + closed != h.size + 1:
+        raise ValueError("spacings: one from each keyframe to the next is expected")
+    for k in range(tracks.shape[0]):
+        call_fit(address, tracks[k], h, closed, signs[k], parameters, segments[k], report[k])
+        reach = max(reach, report[k, REACH])
+    return reach
+
+
+@compiled
+def sample(address, order, curve, origin, slack, t, out):
+    """Evaluate all tracks at t (m,) into out (m * K * width,); the first bad index, or -1.
+
+    ``curve`` as made by `described`: one array, because each costs a call a tenth of a microsecond.
+    """
+    count, tracks, closed = curve[COUNT], curve[TRACKS], curve[CLOSED] != 0
+    knots = carray(at_address(curve[KNOTS]), (count + 1,))
+    segments = carray(at_address(curve[SEGMENTS]), (tracks, count, curve[CONSTANT_COUNT]))
+    signs = carray(at_address(curve[SIGNS]), (tracks,))
+    width = 3 if order else 4
+    if out.size != width * tracks * t.size:
+        raise ValueError("out has another size than the samples")
+    pointer = on_stack(SHEET)
+    sheet = carray(pointer, (ROWS, BLOCK))
+    u = carray(on_stack(BATCH), (BATCH,))
+    # Unsigned: LLVM then knows that no index is negative, and the loops over samples vectorise.
+    where = carray(on_stack(BATCH), (BATCH,)).view(np.uint32)
+    spans = carray(on_stack(BLOCKS), (BLOCKS,)).view(np.uint16)  # first sample, number of samples
+    owner = carray(on_stack(BLOCKS), (BLOCKS,)).view(np.int64)  # the segment of a block
+    segment = 0
+    for start in range(0, t.size, BATCH):
+        batch = t[start : start + BATCH]
+        made, segment, wraps, bad = _locate(
+            knots, closed, origin, slack, batch, segment, u, where, spans, owner
+        )
+        if bad != INSIDE:
+            return start + bad
+        for k in range(tracks):
+            own = out[width * (start * tracks + k) :]
+            filled = MIXED
+            for b in range(made):
+                first, n, i = spans[2 * b], spans[2 * b + 1], owner[b]
+                for j in range(n):
+                    sheet[0, j] = u[first + j]
+                if i == MIXED:
+                    _gather(sheet, knots, segments[k], where, first, n)
+                elif i != filled:
+                    _spread(sheet, knots, segments[k], i, BLOCK if t.size > 1 else 1)
+                filled = i
+                call_sample(address, pointer, n)
+                _store(sheet, order, own, first, n, tracks)
+            if order == 0 and wraps and signs[k] < 0.0:
+                _flip(batch, origin, knots[-1], own, tracks)
+    return INSIDE
+
+
+@compiled
+def _locate(knots, closed, origin, slack, t, segment, u, where, spans, owner):
+    """Local parameter and segment of each sample, and the blocks that they form.
+
+    Returns the number of blocks, the last segment, whether any sample lies in another period, and
+    the first bad index.
+    """
+    made, start, wraps = 0, 0, False
+    while start < t.size:
+        first, n = np.uint16(start), np.uint16(min(BLOCK, t.size - start))
+        lo, hi = knots[segment], knots[segment + 1]
+        rate = 1.0 / (hi - lo)  # a product everywhere: long and mixed blocks agree
+        inside = 0
+        for j in range(n):
+            x = t[first + j] - origin
+            u[first + j] = (x - lo) * rate
+            inside += (x >= lo) & (x < hi)
+        count, i = inside, segment
+        if inside < n:
+            stop = start + n
+            segment, around, bad = _one_by_one(
+                knots,
+                closed,
+                origin,
+                slack,
+                t[start:stop],
+                segment,
+                u[start:stop],
+                where[start:stop],
+            )
+            if bad != INSIDE:
+                return made, segment, wraps, start + bad
+            wraps |= around
+            count, i = _run(where[start:stop])
+            if i != MIXED:
+                segment = i
+        spans[2 * made], spans[2 * made + 1], owner[made] = first, count, i
+        made += 1
+        start += count
+    return made, segment, wraps, INSIDE
+
+
+@compiled
+def _one_by_one(knots, closed, origin, slack, t, segment, u, where):
+    """Local parameters and segments of samples of any order and place; see `_locate`."""
+    wraps = False
+    for j in range(t.size):
+        x = t[j] - origin
+        if not (x >= 0.0 and x < knots[-1]):
+            if closed and abs(x) < np.inf:
+                x = _wrapped(x, knots[-1])
+                wraps = True
+            elif not closed and x >= -slack and x <= knots[-1] + slack:
+                x = min(max(x, 0.0), knots[-1])
+            else:
+                return segment, wraps, j
+        if not (x >= knots[segment] and x < knots[segment + 1]):
+            segment = _find(knots, x, segment)
+        where[j] = segment
+        u[j] = (x - knots[segment]) * (1.0 / (knots[segment + 1] - knots[segment]))
+        if x >= knots[segment + 1]:  # the end of an open curve is its last keyframe, not a rounding
+            u[j] = 1.0
+    return segment, wraps, INSIDE
+
+
+@inlined
+def _run(where):
+    """Samples and segment of the block that begins here: a long run, or all, mixed."""
+    n = 1
+    while n < where.size and where[n] == where[0]:
+        n += 1
+    if n >= LONG or n == where.size:
+        return n, where[0]
+    return where.size, MIXED
+
+
+@inlined
+def _wrapped(x, period):
+    """The time within the first period."""
+    return min(max(x - math.floor(x / period) * period, 0.0), period)
+
+
+@inlined
+def _find(knots, x, segment):
+    """The segment of x: the next one in a sorted sweep, the one of even knots, or by bisection."""
+    last = knots.size - 2
+    if segment < last and x >= knots[segment + 1] and x < knots[segment + 2]:
+        return segment + 1
+    even = min(int(x / knots[-1] * (last + 1)), last)
+    if x >= knots[even] and x < knots[even + 1]:
+        return even
+    low, size = 0, last + 1
+    while size > 1:  # without branches: an unforeseen one costs more than the whole step
+        half = size >> 1
+        low = low + half if knots[low + half] <= x else low
+        size -= half
+    return low
+
+
+@inlined
+def _spread(sheet, knots, segments, i, width):
+    """The constants of segment i for all samples of a block."""
+    rate = 1.0 / (knots[i + 1] - knots[i])
+    for j in range(width):
+        sheet[1, j] = rate
+    for c in range(segments.shape[1]):
+        value = segments[i, c]
+        for j in range(width):
+            sheet[CONSTANTS + c, j] = value
+
+
+@inlined
+def _gather(sheet, knots, segments, where, first, n):
+    """The constants of each sample's own segment."""
+    for j in range(n):
+        i = where[first + j]
+        sheet[1, j] = 1.0 / (knots[i + 1] - knots[i])
+        for c in range(segments.shape[1]):
+            sheet[CONSTANTS + c, j] = segments[i, c]
+
+
+@inlined
+def _store(sheet, order, out, first, n, tracks):
+    """The result rows, component first, into out, sample first."""
+    if order == 0 and tracks == 1:  # a constant stride: the stores vectorise
+        _store_quaternions(sheet, out, first, 4, n)
+    elif order == 0:
+        _store_quaternions(sheet, out, first, 4 * tracks, n)
+    elif tracks == 1:
+        _store_rates(sheet, out, first, 3, n)
+    else:
+        _store_rates(sheet, out, first, 3 * tracks, n)
+
+
+@inlined
+def _store_quaternions(sheet, out, first, stride, n):
+    for j in range(n):
+        at = stride * (first + j)
+        out[at] = sheet[RESULT, j]
+        out[at + 1] = sheet[RESULT + 1, j]
+        out[at + 2] = sheet[RESULT + 2, j]
+        out[at + 3] = sheet[RESULT + 3, j]
+
+
+@inlined
+def _store_rates(sheet, out, first, stride, n):
+    for j in range(n):
+        at = stride * (first + j)
+        out[at] = sheet[RESULT, j]
+        out[at + 1] = sheet[RESULT + 1, j]
+        out[at + 2] = sheet[RESULT + 2, j]
+
+
+@compiled
+def _flip(t, origin, period, out, tracks):
+    """The sign of samples an odd number of periods away, on a track that returns as -q."""
+    for j in range(t.size):
+        if math.floor((t[j] - origin) / period) % 2.0 == 1.0:
+            for c in range(4):
+                out[4 * tracks * j + c] *= -1.0

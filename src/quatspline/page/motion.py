@@ -1,0 +1,172 @@
+"""Motions for the player: curves of several schemes through the same keyframes, sampled.  That is drawing."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from quatspline.catalogue import found
+from quatspline.curve import Curve
+from quatspline.figures.meshes import Mesh, key_mesh, teapot_mesh
+from quatspline.figures.motions import VIEWS
+from quatspline.keyframes import Keyframes
+from quatspline.quaternion import FloatArray
+from quatspline.trajectories.paper import CASES
+
+SAMPLES, LEAST, MOST = 2400, 2, 60
+"""Samples of a motion in all, and the least and the most between two keyframes."""
+
+BEFORE = 1e-7
+"""A sample this share of a segment before each inner keyframe shows the limit from the left there."""
+
+KEY_FACETS, TEAPOT_CELLS = 8, 5
+"""Detail of the bodies, coarser than in the figures: a canvas fills some 50,000 faces a second."""
+
+OWN_SCALE = 0.25
+"""The body's length as a share of the extent of positions that a user gives."""
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A motion that the player shows.
+
+    Attributes
+    ----------
+    name, title : the key, and what a reader calls it
+    keyframes : a single track
+    body : the mesh that moves
+    positions : t (m,) to positions (m, 3), in scene units
+    view : elevation and azimuth of the camera, degrees
+    scale : scene units to one mesh unit
+    pair : the schemes shown at first, left and right
+    schemes : the names offered; None means all of this package's own that apply
+    """
+
+    name: str
+    title: str
+    keyframes: Keyframes
+    body: Mesh
+    positions: Callable[[FloatArray], FloatArray]
+    view: tuple[float, float] = (22.0, -62.0)
+    scale: float = 1.0
+    pair: tuple[str, str] = ("quartic", "nielson")
+    schemes: Sequence[str] | None = None
+
+
+def paper_scenes() -> list[Scene]:
+    """The paper's key and teapot."""
+    bodies = {"key": key_mesh(KEY_FACETS), "teapot": teapot_mesh(TEAPOT_CELLS)}
+    scenes = []
+    for name, case in CASES.items():
+        view = VIEWS[name]
+        camera = (view["elev"], view["azim"])
+        keyframes, body = case.keyframes(), bodies[name]
+        scene = Scene(name, case.title, keyframes, body, case.positions, camera, view["scale"])
+        scenes.append(scene)
+    return scenes
+
+
+def own_scene(
+    name: str,
+    title: str,
+    keyframes: Keyframes,
+    positions: FloatArray | None = None,
+    schemes: Sequence[str] | None = None,
+) -> Scene:
+    """A motion of one's own: a key that turns, along positions (one a time, joined by lines) if there are any."""
+    places = np.zeros((len(keyframes.times), 3)) if positions is None else positions
+    extent = float(np.ptp(places, axis=0).max())
+
+    def along(t: FloatArray) -> FloatArray:
+        return np.stack([np.interp(t, keyframes.times, axis) for axis in places.T], axis=1)
+
+    scale = OWN_SCALE * extent if extent > 0.0 else 1.0
+    return Scene(name, title, keyframes, key_mesh(KEY_FACETS), along, scale=scale, schemes=schemes)
+
+
+def player_data(scene: Scene) -> dict[str, Any]:
+    """What the player needs of a scene, as JSON; arrays are base64 of little-endian 32-bit numbers.
+
+    Times count from the first keyframe.  Samples hold every keyframe time, and the limit from the
+    left before it.  Schemes that do not apply are listed with the reason.
+    """
+    keyframes = scene.keyframes
+    t = grid(keyframes)
+    curves, refused = _curves(scene)
+    times = keyframes.times[0] + t
+    returns = keyframes.quaternions[:1] * keyframes.sign
+    poses = [keyframes.quaternions, returns] if keyframes.closed else [keyframes.quaternions]
+    return {
+        "name": scene.name,
+        "title": scene.title,
+        "start": float(keyframes.times[0]),
+        "closed": keyframes.closed,
+        "knots": keyframes.knots.tolist(),
+        "keyframes": np.concatenate(poses).tolist(),
+        "view": scene.view,
+        "scale": scene.scale,
+        "body": _body(scene.body),
+        "t": packed(t),
+        "positions": packed(scene.positions(times)),
+        "curves": curves,
+        "refused": refused,
+        "pair": [name for name in scene.pair if name in curves] or list(curves)[:2],
+    }
+
+
+def grid(keyframes: Keyframes) -> FloatArray:
+    """Sample times (m,) since the first keyframe."""
+    knots = keyframes.knots
+    each = int(np.clip(SAMPLES // len(knots), LEAST, MOST))
+    shares = np.arange(each) / each
+    inner = (knots[:-1, None] + keyframes.spacings[:, None] * shares).ravel()
+    left = knots[1:] - BEFORE * keyframes.spacings
+    return np.sort(np.concatenate([inner, left, knots[-1:]]))
+
+
+def packed(values: Any, kind: str = "<f4") -> str:
+    """Base64 of an array's numbers, row by row."""
+    return base64.b64encode(np.ascontiguousarray(values, kind).tobytes()).decode("ascii")
+
+
+def _curves(scene: Scene) -> tuple[dict[str, Any], dict[str, str]]:
+    """Samples of every scheme offered, and why others have none."""
+    items = found()
+    offered = scene.schemes
+    if offered is None:
+        offered = [name for name, item in items.items() if item.scheme and not item.scheme.peer]
+    times = scene.keyframes.times[0] + grid(scene.keyframes)
+    curves: dict[str, Any] = {}
+    refused: dict[str, str] = {}
+    for name in offered:
+        try:
+            cls = items[name].scheme
+            if cls is None:
+                raise ValueError(items[name].problem)
+            curves[name] = _samples(cls.from_keyframes(scene.keyframes), times)
+        except Exception as error:  # one that does not apply here; the others are shown
+            refused[name] = " ".join(f"{type(error).__name__}: {error}".split())
+    return curves, refused
+
+
+def _samples(curve: Curve, times: FloatArray) -> dict[str, str]:
+    """Orientations, rates and the log-curve of a scheme; rates that it lacks are NaN."""
+    rates = {k: np.full((len(times), 3), np.nan) for k in (1, 2)}
+    rates |= {k: curve(times, k) for k in (1, 2) if k in curve.orders}
+    q, log = packed(curve(times)), packed(curve.log(times))
+    rates_packed = {"omega": packed(rates[1]), "alpha": packed(rates[2])}
+    return {"title": curve.title, "q": q, "log": log, **rates_packed}
+
+
+def _body(mesh: Mesh) -> dict[str, str]:
+    return {
+        "vertices": packed(mesh.vertices),
+        "cells": packed(mesh.cells, "<u2"),
+        "normals": packed(mesh.normals()),
+        "tint": packed(mesh.tint),
+        "lift": packed(mesh.lift),
+    }

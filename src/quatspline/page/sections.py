@@ -1,0 +1,240 @@
+"""The page's sections in order: what each is about, its tables and plots, and by what it ranks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from quatspline.page.plots import Plot
+
+
+@dataclass(frozen=True)
+class Section:
+    """A section; it is left out when the folder has nothing for it.
+
+    Attributes
+    ----------
+    key, title, text : anchor, heading, introduction
+    tables : names of tables, each shown with its note and its figure
+    plots : interactive plots of them
+    block : a template of its own, `assets/blocks/<block>.html`
+    needs_scenes : whether the block shows motions
+    folded : whether tables start folded (they hold what a figure draws)
+    """
+
+    key: str
+    title: str
+    text: str = ""
+    tables: tuple[str, ...] = ()
+    plots: tuple[Plot, ...] = ()
+    block: str = ""
+    needs_scenes: bool = False
+    folded: bool = False
+
+
+@dataclass(frozen=True)
+class Ranking:
+    """How rows are ordered at first."""
+
+    column: str
+    descending: bool
+    criterion: str
+    among: dict[str, str] = field(default_factory=dict)
+    """Values that the table is filtered for at first."""
+
+
+RANKINGS: dict[str, Ranking] = {
+    "fairness": Ranking(
+        "median",
+        False,
+        "the median over the keyframe sets of the torque energy over the least possible; less is better",
+        {"data": "committed"},
+    ),
+    "compare": Ranking(
+        "torque_over_least",
+        False,
+        "torque energy over the least of all schemes compared; less is better",
+    ),
+    "choosing": Ranking(
+        "torque",
+        False,
+        "the median over the committed keyframe sets of the torque energy over the least possible; less is better",
+    ),
+    "claims": Ranking("verdict", False, "the verdict: what departs comes first"),
+}
+
+SECTIONS: tuple[Section, ...] = (
+    Section(
+        "player",
+        "The motions",
+        "The same keyframes under two schemes. The arrow on the body is its angular velocity; the curve beside it is "
+        "the path of the unit quaternion, with the tangents that arrive at each keyframe and leave it. Where they "
+        "form a corner, the velocity jumps.",
+        block="player",
+        needs_scenes=True,
+    ),
+    Section(
+        "choosing",
+        "Which scheme",
+        "One row a scheme, one column a question. Sort by any column: the line above the table states the criterion.",
+        ("choosing",),
+        (
+            Plot(
+                "choosing",
+                ("nanoseconds_per_sample", "microseconds_per_keyframe", "operations_sample"),
+                ("torque", "torque_worst", "order"),
+                "points",
+                log=(True, True),
+            ),
+        ),
+    ),
+    Section(
+        "table1",
+        "Table 1, beside the paper's own",
+        "The paper fits its B-spline anew for every frame; fitted once, the same curve costs less. Both protocols "
+        "stand beside the paper's numbers, which come from another machine: compare ratios, not seconds.",
+        ("table1",),
+        block="table1",
+    ),
+    Section(
+        "figures",
+        "Figures 1 to 4",
+        "Drawn from the tables under them.",
+        ("figure1", "figure2", "figure3", "figure4"),
+        folded=True,
+    ),
+    Section(
+        "log-curves",
+        "Log-curves",
+        "ln q(t), half the rotation vector, in rad. Drag to turn, scroll to zoom; a click in the legend hides a "
+        "curve or shows it.",
+        block="logs",
+        needs_scenes=True,
+    ),
+    Section(
+        "rates",
+        "Angular velocity and acceleration",
+        "Norms of the body's rates along the motion; keyframes are marked. A curve that is C2 has no step in the "
+        "lower strip.",
+        block="rates",
+        needs_scenes=True,
+    ),
+    Section(
+        "convergence",
+        "Iterations and convergence",
+        "How many updates the iterative schemes need, and where they stop converging.",
+        ("iterations", "convergence"),
+        (
+            Plot(
+                "iterations",
+                ("step_degrees",),
+                ("median", "q95", "most"),
+                split=("method",),
+                facets=("data",),
+                log=(False, True),
+            ),
+            Plot(
+                "convergence",
+                ("unevenness",),
+                ("step_degrees",),
+                "map",
+                (
+                    *("share_converged", "iterations_median", "iterations_q95", "iterations_most"),
+                    *("rate", "rate_theory", "share_jumping", "jump_worst", "seconds_median"),
+                ),
+                facets=("scheme", "method", "keyframes"),
+            ),
+        ),
+    ),
+    Section(
+        "accuracy",
+        "Accuracy",
+        "Error to an analytic motion against the keyframe spacing.",
+        ("accuracy",),
+        (
+            Plot(
+                "accuracy",
+                ("spacing", "keyframes"),
+                ("inner_angle", "angle", "inner_omega", "inner_alpha", "slope"),
+                facets=("knots",),
+                start={"knots": "uniform"},
+                log=(True, True),
+            ),
+        ),
+    ),
+    Section(
+        "cost",
+        "Cost",
+        "Set-up and evaluation apart. Compare seconds within one run only; counts change on no machine.",
+        ("cost",),
+        (
+            Plot(
+                "cost",
+                ("size",),
+                ("seconds_median", "times_fastest", "times_memory"),
+                facets=("task",),
+                start={"task": "set-up"},
+                log=(True, True),
+            ),
+        ),
+    ),
+    Section(
+        "speed",
+        "Speed",
+        "Bounds, what was measured, and whether they are met. Ratios are between rows of one run.",
+        ("speed",),
+        block="speed",
+    ),
+    Section(
+        "continuity",
+        "Continuity",
+        "Jumps of one-sided limits at keyframes, and the k of C^k that follows.",
+        ("continuity",),
+    ),
+    Section(
+        "fairness",
+        "Fairness",
+        "How much more a curve turns and accelerates than it must.",
+        ("fairness",),
+    ),
+    Section(
+        "robustness",
+        "Invariance, locality, noise, edge cases",
+        "What a change of the frame, of one keyframe or of all a little does to a curve, and what hard keyframes do.",
+        ("invariance", "locality", "noise", "edge-cases"),
+        (
+            Plot(
+                "locality",
+                ("offset",),
+                ("response",),
+                facets=("step_degrees",),
+                log=(False, True),
+            ),
+        ),
+    ),
+    Section("claims", "Claims and verdicts", "Each claim beside what was measured.", ("claims",)),
+)
+
+OTHER = Section("other", "Further measurements")
+"""Tables of the folder that no section names."""
+
+_BLOCKS = {section.key: section for section in SECTIONS}
+
+OWN: tuple[Section, ...] = (
+    Section(
+        "compare",
+        "Schemes compared",
+        "One row a scheme on these keyframes. Sort by any column: the line above the table states the criterion.",
+        ("compare",),
+        (
+            Plot(
+                "compare",
+                ("seconds_per_sample", "seconds_set_up"),
+                ("torque_over_least", "jerk_over_least", "peak_over_least"),
+                "points",
+                log=(True, True),
+            ),
+        ),
+    ),
+    *(_BLOCKS[key] for key in ("player", "log-curves", "rates")),
+)
+"""The sections of a page for somebody's own keyframes."""

@@ -1,0 +1,39 @@
+"""The paper's curve: quartic, C^2, local, interpolating, nothing to solve."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from quatspline.families.cumulative import MIDDLE
+from quatspline.fitting.four_keyframes import FIT
+from quatspline.keyframes import Keyframes
+from quatspline.segments import SegmentCurve
+
+
+class QuarticSpline(SegmentCurve):
+    """Quartic interpolatory unit quaternion spline of Xing, Fan, Tan & Xu (2017).
+
+    C^2, interpolating, local (four keyframes shape a segment), one product of three exponentials
+    a sample [xing2017, (1)-(5)], here on arbitrary knots and closed too.  Approximates smooth motion to
+    order 2: the second derivative at a keyframe is three times the three-point estimate.
+
+    Examples
+    --------
+    >>> import quatspline as qs
+    >>> from scipy.spatial.transform import Rotation
+    >>> spin = Rotation.from_rotvec([[0, 0, a] for a in (0, 40, 80, 120)], degrees=True)
+    >>> qs.QuarticSpline(None, spin).rotation(1.5).as_rotvec(degrees=True).round(6)
+    array([ 0.,  0., 60.])
+    """
+
+    title = "Quartic C2 interpolatory spline"
+    reference = "xing2017"
+    continuity = 2
+    order = 2
+    support = 4
+    constant_rate = "interior"
+    family = MIDDLE
+    operations = {"exps per sample": 3, "logs per segment": 1}
+
+    def _fit(self, keyframes: Keyframes) -> None:
+        self._solve(FIT, np.array([3.0]))

@@ -1,0 +1,293 @@
+"""Speed: what every scheme costs on fixed tasks, beside two floors that no scheme can pass.
+
+A task is a set of contenders that do the same work: all schemes that can, in-house and peers as
+published, and the floors: writing the result (``out.fill``) and one sine and cosine a sample (numpy).
+They are timed interleaved (`timing`), so that each reads as a multiple of the floors of the same run.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from quatspline.catalogue import scheme
+from quatspline.curve import Curve
+from quatspline.instruments.trials import reason
+from quatspline.options import declared
+from quatspline.quaternion import FloatArray
+from quatspline.timing.interleaved import (
+    LEAST,
+    Contender,
+    OverBudget,
+    Timing,
+    elapsed,
+    interleaved,
+    repeated,
+)
+from quatspline.trajectories.walks import loop, walk
+
+FILL, SINCOS = "out.fill", "sin, cos"
+FLOORS = (FILL, SINCOS)
+DEGREES = 40.0
+TOLERANCE = 1e-9
+"""Of iterative schemes."""
+
+QUICK_PATIENCE, PATIENCE = 0.02, 0.1
+"""Seconds that one call of a contender may take at either size: slower ones get the first samples only,
+which lie as densely: some libraries take a step a segment."""
+PROBE = 100
+
+FEW, BUDGET = 1000, 5.0
+"""Keyframes from which the set-up of a peer is foretold, and the seconds that it may take."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is timed: ``work(name)`` makes a scheme's contender for a number of items.
+
+    Attributes
+    ----------
+    name, unit : of the task and of an item, e.g. "a sample"
+    keyframes, items : sizes
+    width : numbers written per item: what the floor writes
+    work : scheme -> (function of a number of items -> contender); raises where it does not apply
+    patience : seconds a call; slower contenders do fewer items, unless it is None
+    """
+
+    name: str
+    unit: str
+    keyframes: int
+    items: int
+    width: int
+    work: Callable[[str], Callable[[int], Contender]]
+    patience: float | None = None
+
+
+@dataclass(frozen=True)
+class Row:
+    """A timed contender, or why there is none."""
+
+    name: str
+    items: int = 0
+    timing: Timing | None = None
+    failure: str | None = field(default=None)
+
+
+def measured(
+    task: Task, names: Iterable[str], rounds: int, seed: int = 0, least: float = LEAST
+) -> Iterator[Row]:
+    """Time the floors and schemes of a task interleaved; one row each."""
+    made: dict[str, Contender] = {}
+    items: dict[str, int] = {}
+    for name in (*FLOORS, *names):
+        try:
+            made[name], items[name] = contender_of(task, name)
+        except OverBudget as error:
+            yield Row(name, failure=str(error))
+        except Exception as error:  # what does not apply is a row with its reason
+            yield Row(name, failure=reason(error))
+    for name, timing in interleaved(made, rounds, seed, least).items():
+        yield Row(name, items[name], timing)
+
+
+def contender_of(task: Task, name: str) -> tuple[Contender, int]:
+    """The contender of a scheme or a floor, and the items that it does; raises where there is none."""
+    if name in FLOORS:
+        return _floor(task, name), task.items
+    make = task.work(name)
+    items = _affordable(task, make)
+    return make(items), items
+
+
+def _floor(task: Task, name: str) -> Contender:
+    if name == FILL:
+        out = np.empty((task.items, task.width))
+        return repeated(lambda: out.fill(0.0))
+    angles = np.linspace(0.0, 1.5, task.items)
+    sine, cosine = np.empty(task.items), np.empty(task.items)
+
+    def waves() -> None:
+        np.sin(angles, out=sine)
+        np.cos(angles, out=cosine)
+
+    return repeated(waves)
+
+
+def _affordable(task: Task, make: Callable[[int], Contender]) -> int:
+    """The items that a contender does within the task's patience.
+
+    By ever larger probes: what a call costs whatever their number must not show in the time of one.
+    """
+    if task.patience is None:
+        return task.items
+    items = min(PROBE, task.items)
+    while True:
+        probe = make(items)
+        probe(1)  # what is compiled or cached on first use
+        seconds = elapsed(probe, 1)
+        if items == task.items or seconds > task.patience / 2:
+            return items
+        items = min(task.items, int(items * min(10.0, task.patience / seconds)))
+
+
+# -- tasks ---------------------------------------------------------------------------------------
+
+
+def tasks(rng: np.random.Generator, quick: bool) -> list[Task]:
+    """The tasks of the speed table; quick leaves out those that take longest."""
+    keyframes = walk(rng, 1000, DEGREES)[:, 0]
+    patience = QUICK_PATIENCE if quick else PATIENCE
+    even = np.linspace(0.0, 999.0, 1_000_000)
+    chosen = [
+        _evaluation("evaluate", keyframes, even, patience),
+        _setup("set-up", keyframes),
+        _latency("one sample", keyframes),
+    ]
+    if quick:
+        return chosen
+    dense = walk(rng, 20_000, DEGREES)[:, 0]
+    few = np.linspace(0.0, len(dense) - 1.0, 3 * len(dense))
+    bones, frames = walk(rng, 300, DEGREES, 31), np.linspace(0.0, 299.0, 10_000)
+    turns = np.tile(loop(rng, 1000, DEGREES)[:, 0], (1000, 1))
+    return [
+        *chosen,
+        _evaluation("velocity", keyframes, even, patience, order=1),
+        _evaluation("acceleration", keyframes, even, patience, order=2),
+        _evaluation("unsorted", keyframes, rng.permutation(even), patience),
+        _evaluation("three samples a segment", dense, few, patience),
+        _evaluation("31-joint skeleton", bones, frames, patience, width=4 * 31),
+        _evaluation("two threads", keyframes, even, patience, threads=2),
+        _long("a million keyframes", turns),
+    ]
+
+
+def _options(name: str) -> dict[str, Any]:
+    return {"tolerance": TOLERANCE} if "tolerance" in declared(scheme(name)._fit) else {}
+
+
+def _practical(name: str, count: int) -> type[Curve]:
+    """The scheme, unless it says that so many keyframes are too many for it."""
+    cls = scheme(name)
+    if failure := cls.impractical(count):
+        raise OverBudget(failure)
+    return cls
+
+
+def _curve(name: str, keyframes: FloatArray) -> Curve:
+    cls = _practical(name, len(keyframes))
+    if cls.peer is not None and len(keyframes) > FEW:  # the cost may grow with the square
+        start = time.perf_counter()
+        cls(None, keyframes[:FEW])
+        seconds = (time.perf_counter() - start) * (len(keyframes) / FEW) ** 2
+        if seconds > BUDGET:
+            raise OverBudget
+    return cls(None, keyframes, **_options(name))
+
+
+def _evaluation(
+    name: str,
+    keyframes: FloatArray,
+    t: FloatArray,
+    patience: float,
+    *,
+    order: int = 0,
+    threads: int = 1,
+    width: int | None = None,
+) -> Task:
+    """Samples into a given array."""
+
+    def work(who: str) -> Callable[[int], Contender]:
+        curve = _curve(who, keyframes)
+        if threads > 1 and curve.peer is not None:
+            raise ValueError("its library offers no threads")
+
+        def make(items: int) -> Contender:
+            samples = t[:items]
+            out = curve(samples, order)
+            return repeated(lambda: curve(samples, order, out=out, threads=threads))
+
+        return make
+
+    return Task(
+        name, "sample", len(keyframes), t.size, width or (3 if order else 4), work, patience
+    )
+
+
+def _setup(name: str, keyframes: FloatArray) -> Task:
+    """The public call that builds a curve, validation included."""
+    times = np.arange(float(len(keyframes)))
+
+    def work(who: str) -> Callable[[int], Contender]:
+        _curve(who, keyframes)
+        cls, options = scheme(who), _options(who)
+        return lambda items: repeated(lambda: cls(times, keyframes, **options))
+
+    return Task(name, "keyframe", len(keyframes), len(keyframes), 4, work)
+
+
+def _latency(name: str, keyframes: FloatArray) -> Task:
+    """One sample a call: a frame loop."""
+
+    def work(who: str) -> Callable[[int], Contender]:
+        curve = _curve(who, keyframes)
+        return lambda items: repeated(lambda: curve(456.78))
+
+    return Task(name, "call", len(keyframes), 1, 4, work)
+
+
+def _long(name: str, keyframes: FloatArray) -> Task:
+    """Set-up and a sample a segment, so that nothing waits to be fitted."""
+    t = np.arange(len(keyframes) - 1.0) + 0.5
+
+    def work(who: str) -> Callable[[int], Contender]:
+        cls, options = _practical(who, len(keyframes)), _options(who)
+        if cls.peer is not None:
+            raise OverBudget
+        return lambda items: repeated(lambda: cls(None, keyframes, **options)(t))
+
+    return Task(name, "keyframe", len(keyframes), len(keyframes), 4, work)
+
+
+# -- start ---------------------------------------------------------------------------------------
+
+_IMPORT = """
+import time
+import numpy
+start = time.perf_counter()
+import quatspline
+print(time.perf_counter() - start)
+"""
+_FIRST = """
+import time
+import numpy as np
+import quatspline as qs
+q = np.array([[1.0, 0, 0, 0], [0.8, 0.6, 0, 0], [0.6, 0.8, 0, 0]])
+start = time.perf_counter()
+qs.QuarticSpline(None, q)(0.5)
+print(time.perf_counter() - start)
+"""
+
+
+def starts(rounds: int, quick: bool) -> Iterator[tuple[str, list[float]]]:
+    """Seconds in new processes: the import; a first curve and sample from cached code, in full size also
+    compiling it."""
+    yield "import quatspline", [_seconds(_IMPORT) for _ in range(rounds)]
+    yield "first sample, code cached", [_seconds(_FIRST) for _ in range(rounds)]
+    if quick:
+        return
+    with tempfile.TemporaryDirectory(prefix="quatspline-") as folder:
+        yield "first sample, compiling", [_seconds(_FIRST, QUATSPLINE_CACHE=folder)]
+
+
+def _seconds(script: str, **environment: str) -> float:
+    known = os.environ | environment
+    command = [sys.executable, "-c", script]
+    return float(subprocess.run(command, env=known, capture_output=True, check=True).stdout)
