@@ -61,7 +61,7 @@ new-baseline: $(VENV)/run ## Write a working template: NAME=my_scheme
 	@$(BIN)/python -m tools.new_scheme '$(NAME)'
 
 check-baseline: $(VENV)/test ## Conformance and claims of one scheme: NAME=my_scheme
-	@$(BIN)/python -m pytest -q tests/test_conformance.py tests/test_claims.py --scheme '$(NAME)'
+	@$(BIN)/python -m pytest -q tests/schemes/test_conformance.py tests/schemes/test_claims.py --scheme '$(NAME)'
 
 reference: $(VENV)/run ## Take the tables of the last run as the reference and quote them in the README
 	@$(BIN)/python -m tools.readme --adopt results

@@ -19,7 +19,7 @@ class Template(Curve):
         Q(u) = ((1 - u) q_i + u q_{i+1}) / |(1 - u) q_i + u q_{i+1}|                             (1)
     """
 
-    # Claims, each of them measured by tests/test_claims.py.
+    # Claims, each of them measured by tests/schemes/test_claims.py.
     title = "Template"
     reference = "shoemake1985"  # a key of references.bib
     continuity = 0  # k of C^k on the unit sphere

@@ -24,7 +24,7 @@ CLEAR = 2.0
 
 ACCURACY = (
     "Accuracy: the orientation of `quartic` agrees with evaluation in 50 digits to 1e-15 on 10,000 random samples; "
-    "`tests/test_paper.py` asserts it."
+    "`tests/schemes/test_paper.py` asserts it."
 )
 """The test is test_ten_thousand_random_samples_err_by_four_ulp_at_most."""
 

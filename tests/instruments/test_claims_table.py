@@ -59,7 +59,7 @@ def measured(name: str, claim: str) -> dict:
 
 
 SOURCES = ("ours", "peer", "paper")
-REFERENCE = Path(__file__).parents[1] / "results" / "reference" / "claims.csv"
+REFERENCE = Path(__file__).parents[2] / "results" / "reference" / "claims.csv"
 
 
 # -- verdicts -----------------------------------------------------------------------------------

@@ -15,7 +15,7 @@ from quatspline import catalogue
 from tools import new_scheme
 from walks import walk
 
-EXAMPLE = Path(__file__).parent / "data" / "example_package"
+EXAMPLE = Path(__file__).parents[1] / "data" / "example_package"
 
 HALF = '''
 """A scheme of two lines: turns by half of what slerp would."""
@@ -307,14 +307,17 @@ def test_scaffold_writes_a_working_scheme(folder: Path, capsys: pytest.CaptureFi
 def test_scaffold_passes_its_own_checks(folder: Path) -> None:
     """What `make check-baseline NAME=...` runs."""
     new_scheme.main(["my-checked", str(folder)])
-    tests = [str(Path(__file__).with_name(f"test_{name}.py")) for name in ("conformance", "claims")]
+    tests = [
+        str(Path(__file__).parents[1] / "schemes" / f"test_{name}.py")
+        for name in ("conformance", "claims")
+    ]
     options = ["-q", "-x", "-p", "no:cacheprovider", "-p", "no:randomly", "--scheme", "my_checked"]
     done = subprocess.run(
         [sys.executable, "-m", "pytest", *options, *tests, "-k", "my-checked"],
         capture_output=True,
         text=True,
         env={**os.environ, "PYTHONPATH": str(catalogue.PACKAGE.parent)},
-        cwd=Path(__file__).parents[1],
+        cwd=Path(__file__).parents[2],
         check=False,
     )
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]

@@ -99,7 +99,7 @@ def test_the_markdown_says_all_three():
 
 
 def test_the_sentence_on_accuracy_is_what_a_test_asserts():
-    source = (Path(__file__).parent / "test_paper.py").read_text(encoding="utf-8")
+    source = (Path(__file__).parents[1] / "schemes" / "test_paper.py").read_text(encoding="utf-8")
     test = source.partition("def test_ten_thousand_random_samples_err_by_four_ulp_at_most")[2]
     body = test.partition("\ndef ")[0]
     assert "qs.QuarticSpline" in body

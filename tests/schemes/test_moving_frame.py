@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import sys
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,11 +11,11 @@ from scipy.interpolate import make_interp_spline
 from scipy.spatial.transform import Rotation
 
 import quatspline as qs
+from golden import GOLDEN
 from quatspline import quaternion, stencil
 from quatspline.quaternion import FloatArray
 from walks import apart, apart_up_to_sign, inside, loop, uneven, walk
 
-GOLDEN = json.loads((Path(__file__).parent / "data" / "golden.json").read_text())
 Q = np.array(GOLDEN["meta"]["q"], float)
 T = np.array(GOLDEN["meta"]["t_nonuniform"], float)
 ENDS = ["natural", "not-a-knot", "complete"]

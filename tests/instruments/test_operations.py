@@ -18,7 +18,7 @@ from quatspline.options import declared
 from quatspline.timing.operations import executed, iterations, per_keyframe, per_sample
 from quatspline.trajectories.paper import CASES, SOLVE
 
-COUNTING = Path(__file__).parent / "counting.py"
+COUNTING = Path(__file__).parents[1] / "counting.py"
 
 table1 = load(shipped("experiments") / "table1.py", "experiment")
 

@@ -1,18 +1,16 @@
 """The least-torque reference: golden energies, the equation of Riemannian cubics, its reports."""
 
-import json
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import quatspline as qs
+from golden import GOLDEN
 from quatspline.curve import Curve
 from quatspline.trajectories.sets import step_sets
 from walks import spin, uneven, walk
 
-GOLDEN = json.loads((Path(__file__).parent / "data" / "golden.json").read_text())
 KEYFRAMES = np.array(GOLDEN["meta"]["q"], dtype=float)
 TIMES = np.array(GOLDEN["meta"]["t_nonuniform"], dtype=float)
 LEAST = GOLDEN["schemes"]["min_torque"]

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import json
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import quatspline as qs
+from golden import GOLDEN
 from quatspline import quaternion, stencil
 from quatspline.fitting.tangents import CHART, SECANT, chart_velocities
 
-GOLDEN = json.loads((Path(__file__).parent / "data" / "golden.json").read_text())
 Q = np.array(GOLDEN["meta"]["q"], dtype=float)
 T = np.array(GOLDEN["meta"]["t_nonuniform"], dtype=float)
 NEAR = 1e-9

@@ -1,9 +1,7 @@
 """The paper's theorem and formulas in 50 digits, and golden numbers made in 50 digits elsewhere."""
 
 import itertools
-import json
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import mpmath as mp
@@ -11,6 +9,7 @@ import numpy as np
 import pytest
 
 import quatspline as qs
+from golden import GOLDEN
 from powers import powers
 from quatspline import quaternion
 from quatspline.families import cumulative
@@ -20,7 +19,6 @@ DIGITS = 50
 ZERO = 1e-20
 """What is left of an identity in 50 digits after two numerical derivatives."""
 CLOSE = 1e-14
-GOLDEN = json.loads((Path(__file__).parent / "data" / "golden.json").read_text())
 
 Vector = list[Any]
 

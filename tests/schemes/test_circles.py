@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import quatspline as qs
+from golden import GOLDEN
 from quatspline import quaternion, stencil
 from quatspline.curve import Curve
 from quatspline.families.circles import BIARC, BLEND, SPLIT
 from quatspline.quaternion import FloatArray
 from walks import apart, apart_up_to_sign, inside, loop, spin, uneven, walk
 
-GOLDEN = json.loads((Path(__file__).parent / "data" / "golden.json").read_text())
 Q = np.array(GOLDEN["meta"]["q"], float)
 T = np.array(GOLDEN["meta"]["t_nonuniform"], float)
 NAMES = ["biarc", "circular-blend"]

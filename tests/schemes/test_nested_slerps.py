@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import json
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import quatspline as qs
+from golden import GOLDEN
 from quatspline import quaternion, stencil
 from quatspline.families import chords, nested
 
-GOLDEN = json.loads((Path(__file__).parent / "data" / "golden.json").read_text())
 Q = np.array(GOLDEN["meta"]["q"], dtype=float)
 TIMES = {
     "uniform": np.array(GOLDEN["meta"]["t_uniform"], dtype=float),

@@ -1,13 +1,12 @@
 """The interpolating B-spline of Kim, Kim & Shin, and the block-tridiagonal solver behind it."""
 
-import json
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import quatspline as qs
+from golden import GOLDEN
 from powers import powers
 from quatspline import quaternion
 from quatspline.curve import Curve
@@ -16,7 +15,6 @@ from quatspline.fitting.block_tridiagonal import solve_block_tridiagonal
 from quatspline.quaternion import FloatArray
 from walks import walk
 
-GOLDEN = json.loads((Path(__file__).parent / "data" / "golden.json").read_text())
 KEYS = np.array(GOLDEN["meta"]["q"], float)
 UNEVEN = np.array([0.0, 0.7, 1.9, 2.6, 4.0])
 KNOTS = {"uniform": np.arange(5.0), "nonuniform": UNEVEN, "closed": np.append(UNEVEN, 5.1)}

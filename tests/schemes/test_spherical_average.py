@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-import json
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import quatspline as qs
+from golden import GOLDEN
 from quatspline import quaternion, stencil
 from quatspline.families import means
 from quatspline.kernels.jit import compiled
 from quatspline.quaternion import FloatArray
 from walks import apart, apart_up_to_sign, inside, loop, spin, uneven, walk
 
-GOLDEN = json.loads((Path(__file__).parent / "data" / "golden.json").read_text())
 Q = np.array(GOLDEN["meta"]["q"], float)
 T = np.array(GOLDEN["meta"]["t_nonuniform"], float)
 TIGHT = 1e-12
