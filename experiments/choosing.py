@@ -10,9 +10,10 @@ from matplotlib.figure import Figure
 from quatspline.catalogue import found, version
 from quatspline.claims.claim import DEPARTS, UNDECIDED
 from quatspline.figures import style
-from quatspline.findings import choosing
+from quatspline.findings import decisions
 from quatspline.findings.quotes import Reader
 from quatspline.quaternion import FloatArray
+from quatspline.runs.experiment import FULL, QUICK
 from quatspline.runs.running import Run
 from quatspline.timing.operations import SET_UP, stated
 from quatspline.trajectories.sets import COUNT
@@ -96,12 +97,12 @@ def derive(run: Run, read: Reader) -> pd.DataFrame:
     table["leaps"] = pd.Series([next(_texts(pair), None) for pair in leaps], dtype=object)
     causes = zip(*(table[name] for name in FAILURES), strict=True)
     table["worst_failure"] = ["; ".join(_texts(row)) or None for row in causes]
-    table["run_size"] = "quick" if table[list(SMALL)].eq(True).to_numpy().any() else "full"
+    table["run_size"] = QUICK if table[list(SMALL)].eq(True).to_numpy().any() else FULL
     table["version"] = table["scheme"].map(version)
     table["missing"] = ", ".join(missing) or None
     through = table[table["passes_keys"].ne("no")]
-    table["pareto"] = choosing.pareto(through, choosing.COUNTED)
-    table["times_pareto"] = choosing.pareto(through, choosing.TIMED)
+    table["pareto"] = decisions.pareto(through, decisions.COUNTED)
+    table["times_pareto"] = decisions.pareto(through, decisions.TIMED)
     return table[COLUMNS].astype(dict.fromkeys(WHOLE, "Int64"))
 
 
@@ -111,7 +112,7 @@ def _texts(values: Iterable[Any]) -> Iterator[str]:
 
 
 def text(table: pd.DataFrame) -> str:
-    return "## Decisions\n\n" + "\n".join(choosing.lines(table))
+    return "## Decisions\n\n" + "\n".join(decisions.lines(table))
 
 
 # -- what each table says -----------------------------------------------------------------------
@@ -217,7 +218,7 @@ def _cost(table: pd.DataFrame) -> pd.DataFrame:
         told = [_all_counted(str(name), UNITS[task]) for name in rows.index]
         part = {seconds: each, operations: counts.where(np.array(told, dtype=bool))}
         parts.append(pd.DataFrame({**part, fastest: each / each.min()}))
-    short = "run_size" in table and bool(table["run_size"].eq("quick").any())
+    short = "run_size" in table and bool(table["run_size"].eq(QUICK).any())
     return pd.concat(parts, axis=1).assign(short_rounds=short)
 
 

@@ -14,6 +14,7 @@ import pytest
 
 from quatspline import catalogue, comparing
 from quatspline.cli import commands
+from quatspline.cli.compare import FILES
 from quatspline.runs import experiment
 from quatspline.runs.results import Results
 from quatspline.system.atomic import ASIDE, naming
@@ -55,7 +56,7 @@ def refused(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch)
 
     def call(*arguments: str) -> str:
         with monkeypatch.context() as patch:
-            patch.setattr(comparing, "_compared", measured)
+            patch.setattr(comparing, "compared", measured)
             assert commands.main(arguments) == 2
         told = capsys.readouterr().err
         assert told.count("\n") == 1, told
@@ -93,7 +94,7 @@ def test_compare_replaces_foreign_files_by_force_only(
     assert sorted(os.listdir(out)) == ["notes.md", "rates.svg"]
     for force in (["--force"], []):  # and then they are its own
         assert commands.main([*command, *force]) == 0
-    written = {*comparing.FILES} & set(os.listdir(out))
+    written = {*FILES} & set(os.listdir(out))
     assert set(json.loads((out / "manifest.json").read_text())["files"]) == written
     assert (out / "notes.md").read_text() == "precious"
     assert "precious" not in (out / "rates.svg").read_text()

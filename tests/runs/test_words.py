@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from quatspline import comparing
 from quatspline.cli import commands, words
+from quatspline.cli import compare as compare_command
 from quatspline.runs import experiment, running
 
 
@@ -26,7 +26,7 @@ def asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         seen.update(given, experiments=list(experiments))
         return []
 
-    monkeypatch.setattr(comparing, "command", compare)
+    monkeypatch.setattr(compare_command, "command", compare)
     monkeypatch.setattr(running, "run", run)
     monkeypatch.chdir(tmp_path)
     rows = ("0,1,0,0,0\n", "1,0.8,0.6,0,0\n", "2,1,0,0,0\n")
