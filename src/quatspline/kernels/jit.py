@@ -30,6 +30,7 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.extending import intrinsic
 
 from quatspline.system import forking
+from quatspline.system.moved import today
 
 BLOCK = 48
 """Samples in a block: its sheet stays within the first-level cache, and rows no power of two apart
@@ -76,7 +77,7 @@ def _compiled_from(source: Path) -> set[Path]:
         path = pending.pop()
         seen.add(path)
         for module in _imported(path.read_text(encoding="utf-8")):
-            found = package.joinpath(*module.split(".")[1:]).with_suffix(".py")
+            found = package.joinpath(*today(module).split(".")[1:]).with_suffix(".py")
             if found not in seen and found.is_file() and COMPILES in found.read_text("utf-8"):
                 pending.append(found)
     return seen
