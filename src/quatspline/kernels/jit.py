@@ -25,12 +25,14 @@ from typing import Any
 
 import numba
 from llvmlite import ir
+from numba import extending
 from numba.core import types
 from numba.core.compiler_lock import global_compiler_lock
-from numba.extending import intrinsic
 
 from quatspline.system import forking
 from quatspline.system.moved import today
+
+intrinsic: Any = extending.intrinsic  # typed, mypy would ask callers for the typing context
 
 BLOCK = 48
 """Samples in a block: its sheet stays within the first-level cache, and rows no power of two apart
