@@ -101,6 +101,12 @@ def declared(fit: Callable[..., Any]) -> dict[str, inspect.Parameter]:
     }
 
 
+def among(fit: Callable[..., Any], wanted: Mapping[str, Any]) -> dict[str, Any]:
+    """Those of the wanted options that a `_fit` declares."""
+    known = declared(fit)
+    return {name: value for name, value in wanted.items() if name in known}
+
+
 def checked(scheme: str, fit: Callable[..., Any], given: Mapping[str, Any]) -> dict[str, Any]:
     """The given options, refused with a ValueError where a name or a value is not declared."""
     known = declared(fit)
