@@ -20,7 +20,7 @@ from numba import config
 import quatspline as qs
 from quatspline import catalogue
 from quatspline.kernels import jit
-from quatspline.peers.wrapping import quiet
+from quatspline.system.quiet import quiet
 
 TRIAL = Path(__file__).parents[1] / "robustness" / "threads.py"
 LATE = 1.0
@@ -342,7 +342,7 @@ thread.join(60)
             "lock.acquire()",
         ),
         (
-            "from quatspline.peers.wrapping import quiet\n"
+            "from quatspline.system.quiet import quiet\n"
             "def peer():\n    with quiet():\n        gate.entered.set(); gate.go.wait(60)\n"
             "thread = threading.Thread(target=peer)\n"
             "thread.start(); assert gate.entered.wait(60)",

@@ -19,8 +19,9 @@ from quatspline import quaternion, stencil
 from quatspline.catalogue import version
 from quatspline.curve import Curve
 from quatspline.instruments.continuity import jumps
-from quatspline.peers.wrapping import quiet, reflected
+from quatspline.peers.splines import reflected
 from quatspline.quaternion import FloatArray
+from quatspline.system.quiet import quiet
 from walks import apart, apart_up_to_sign, inside, loop, spin, uneven, walk
 
 pytestmark = pytest.mark.peers
