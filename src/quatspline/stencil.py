@@ -13,7 +13,7 @@ from functools import cache
 import numpy as np
 
 from quatspline import quaternion
-from quatspline.quaternion import FloatArray, IntArray
+from quatspline.inputs.arrays import FloatArray, IntArray
 
 POINTS = 9
 STEP = 6e-3
