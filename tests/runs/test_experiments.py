@@ -225,7 +225,7 @@ def test_schemes_that_do_not_apply_are_rows_of_table1(monkeypatch):
     monkeypatch.setattr(motions, "render", lambda case, t, q: len(t))
     module = experiment("table1")
     names = ("quartic", "log-cubic", "nlerp")
-    table = module._group(Run(quick=True), TEAPOT, TEAPOT.rows[1], "solve-once", names)
+    table = module.group(Run(quick=True), TEAPOT, TEAPOT.rows[1], "solve-once", names)
     assert set(table["scheme"]) == set(names)
     row = table[table["scheme"] == "log-cubic"].iloc[0]
     assert "closed" in row["failure"]
