@@ -321,7 +321,7 @@ class Curve(abc.ABC):
                 f"times[{i}] to times[{i + 1}] is {float(keyframes.spacings[i])!r}, not "
                 f"{float(keyframes.spacings[0])!r}: {self.name} takes uniform times only"
             )
-        self._options = options.checked(self.name, type(self)._fit, given)
+        self._options = options.checked(type(self), given)
         self._keyframes = keyframes
         self._domain = Domain(keyframes.times, float(keyframes.knots[-1]), keyframes.closed)
         self._widths = tuple((*keyframes.track_shape, width) for width in (4, 3, 3))
@@ -330,7 +330,7 @@ class Curve(abc.ABC):
             self._parts: tuple[Curve, ...] = ()
             self._fit(keyframes, **self._options)
         else:
-            known = options.declared(type(self)._fit)
+            known = options.declared_by(type(self))
             excused = {"on_failure": "return"} if "on_failure" in known else {}
             self._parts = tuple(
                 type(self).from_keyframes(keyframes.track(k), **self._options | excused)
