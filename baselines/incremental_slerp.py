@@ -75,8 +75,7 @@ class IncrementalSlerp(SegmentCurve):
             report,
         )
         # Every step is a segment of its own.
-        knots = keyframes.knots[:-1, None] + h[:, None] / steps * np.arange(steps)
-        knots = np.append(knots, keyframes.knots[-1])
+        knots = np.append(keyframes.inside(np.arange(steps) / steps), keyframes.knots[-1])
         if (np.diff(knots) <= 0.0).any():
             raise ValueError(f"steps={steps}: float64 does not tell so many within a spacing apart")
         self._set_segments(segments, reach, knots)

@@ -69,8 +69,7 @@ class MinimumTorqueSpline(SegmentCurve):
     ) -> None:
         m, tracks = subintervals, keyframes.tracks
         h = np.repeat(keyframes.spacings / m, m)
-        inner = keyframes.knots[:-1, None] + np.arange(m) * h[::m, None]
-        knots = np.append(inner, keyframes.knots[-1])
+        knots = np.append(keyframes.inside(np.arange(m) / m), keyframes.knots[-1])
         start = LocalQuinticSpline.from_keyframes(keyframes)
         nodes, v, a = (np.moveaxis(start.inner(knots, k), 1, 0).copy() for k in (0, 1, 2))
         nodes[:, ::m] = tracks

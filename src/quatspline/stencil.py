@@ -13,6 +13,7 @@ from functools import cache
 import numpy as np
 
 from quatspline import quaternion
+from quatspline.keyframes import segment_of
 from quatspline.quaternion import FloatArray, IntArray
 
 POINTS = 9
@@ -45,7 +46,7 @@ def rates(
     orientation: Callable[[FloatArray], FloatArray], t: FloatArray, knots: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Body angular velocity and acceleration (m, 3) at t (m,) of a curve smooth between knots."""
-    segment = np.clip(np.searchsorted(knots, t, side="right") - 1, 0, len(knots) - 2)
+    segment = segment_of(knots, t)
     lo, hi = knots[segment], knots[segment + 1]
     step = np.minimum(STEP * (hi - lo), TURN / _speed(orientation, segment, knots))
     reach = POINTS // 2

@@ -91,9 +91,9 @@ def order(name: str, keyframes: int = 161) -> float:
 
 def _inner_error(name: str, count: int) -> float:
     times = np.linspace(0.0, SPAN, count)
-    t = _inside(times, accuracy.SAMPLES)
-    t = t[(t >= INNER[0]) & (t <= INNER[1])]
     curve = builder(name)(times, tumble(times))
+    t = curve.keyframes.inside(accuracy.SAMPLES)
+    t = t[(t >= INNER[0]) & (t <= INNER[1])]
     return float(quaternion.distance(curve(t), tumble(t)).max())
 
 
@@ -110,13 +110,14 @@ def constant_rate(name: str, degrees: float = 50, uneven: bool = False, count: i
     """
     times, _ = walked(count, degrees, uneven)
     times *= (count - 1) / times[-1]
-    t = _inside(times, SAMPLES)
 
     def spin(at: FloatArray) -> FloatArray:
         half = np.radians(degrees) / 2.0 * at[:, None]
         return quaternion.mul(quaternion.exp(OBLIQUE), quaternion.exp(half * AXIS))
 
-    off = quaternion.distance(builder(name)(times, spin(times))(t), spin(t)) / np.radians(degrees)
+    curve = builder(name)(times, spin(times))
+    t = curve.keyframes.inside(SAMPLES)
+    off = quaternion.distance(curve(t), spin(t)) / np.radians(degrees)
     inner = (t > times[EDGE]) & (t < times[-1 - EDGE])
     if off.max() <= CONSTANT:
         return "everywhere"
@@ -156,11 +157,6 @@ def _accepted(name: str, times: FloatArray, keyframes: FloatArray) -> bool:
     except ValueError:
         return False
     return bool(np.isfinite(curve(times)).all())
-
-
-def _inside(times: FloatArray, samples: int) -> FloatArray:
-    u = (np.arange(samples) + 0.5) / samples
-    return (times[:-1, None] + np.diff(times)[:, None] * u).reshape(-1)
 
 
 # -- what else is said of curves ----------------------------------------------------------------
@@ -204,8 +200,8 @@ def _torque(name: str, times: FloatArray, keyframes: FloatArray) -> float:
 def reversal_deviation(name: str, count: int = 4, degrees: float = 60) -> float:
     """The largest angle, over the step, between a curve and that of the keyframes in reverse order."""
     times, keyframes = walked(count, degrees)
-    t = _inside(times, SAMPLES)
     forth, back = (builder(name)(times, q) for q in (keyframes, keyframes[::-1]))
+    t = forth.keyframes.inside(SAMPLES)
     apart = quaternion.distance(forth(t), back(times[-1] - t))
     return float(apart.max() / np.radians(degrees))
 
@@ -217,5 +213,5 @@ def moved_by_a_flip(name: str, count: int = 5, degrees: float = 60, **options: A
     straight = build(name, times, flipped)
     flipped[count // 2] *= -1.0
     astray = build(name, times, flipped, align=False, **options)
-    t = _inside(times, SAMPLES)
+    t = straight.keyframes.inside(SAMPLES)
     return float(np.degrees(quaternion.distance(straight(t), astray(t)).max()))

@@ -39,9 +39,7 @@ def errors(curve: Curve) -> dict[str, float]:
 
     inner_angle, angle (rad, on [3, 7] and everywhere), inner_omega (rad/t), inner_alpha (rad/t^2).
     """
-    times = curve.times
-    u = (np.arange(SAMPLES) + 0.5) / SAMPLES
-    t = (times[:-1, None] + np.diff(times)[:, None] * u).reshape(-1)
+    t = curve.times[0] + curve.keyframes.inside(SAMPLES)
     inner = (t >= INNER[0]) & (t <= INNER[1])
     angle = quaternion.distance(curve(t), tumble(t))
     omega, alpha = tumble_rates(t[inner])

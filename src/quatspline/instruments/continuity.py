@@ -93,7 +93,7 @@ def speeds(curve: Curve) -> Row:
     motion rests throughout, the first also without inner keyframes.
     """
     at, _ = _inner_knots(curve)
-    dense = _dense(curve)
+    dense = curve.keyframes.inside(DENSE)
     speed, at_keys = (np.linalg.norm(rates_since(curve, t)[0], axis=-1) for t in (dense, at))
     mean = float(speed.mean())
     if mean * float(curve.keyframes.knots[-1]) <= AT_REST:
@@ -104,17 +104,10 @@ def speeds(curve: Curve) -> Row:
 
 def _inner_knots(curve: Curve) -> tuple[FloatArray, FloatArray]:
     """Knots with a segment on either side (a closed curve's seam too), and the shorter spacing."""
-    knots = curve.keyframes.knots
-    h = np.diff(knots)
+    knots, h = curve.keyframes.knots, curve.keyframes.spacings
     if curve.closed:
         return knots[1:], np.minimum(h, np.roll(h, -1))
     return knots[1:-1], np.minimum(h[:-1], h[1:])
-
-
-def _dense(curve: Curve) -> FloatArray:
-    knots = curve.keyframes.knots
-    u = (np.arange(DENSE) + 0.5) / DENSE
-    return (knots[:-1, None] + np.diff(knots)[:, None] * u).reshape(-1)
 
 
 def _jumps(curve: Curve, at: FloatArray, step: FloatArray) -> list[FloatArray]:
@@ -127,8 +120,8 @@ def _jumps(curve: Curve, at: FloatArray, step: FloatArray) -> list[FloatArray]:
 
 def _sizes(curve: Curve) -> list[float]:
     """Largest sizes of q, of both rates and of the acceleration's slope between samples."""
-    omega, alpha = rates_since(curve, _dense(curve))
-    apart = np.diff(curve.keyframes.knots)[:, None, None] / DENSE
+    omega, alpha = rates_since(curve, curve.keyframes.inside(DENSE))
+    apart = curve.keyframes.spacings[:, None, None] / DENSE
     slope = np.diff(alpha.reshape(-1, DENSE, 3), axis=1) / apart
     return [1.0, *(float(np.linalg.norm(x, axis=-1).max()) for x in (omega, alpha, slope))]
 
@@ -140,9 +133,9 @@ def rounding(curve: Curve, order: int) -> float:
 
 def _floor(curve: Curve, order: int, size: float, speed: float) -> float:
     """What a jump of this order has to exceed to be told from rounding, of orientations and of time."""
-    knots = curve.keyframes.knots
-    scale = float(np.diff(knots).min()) ** -order
-    tick = float(np.spacing(knots[-1])) * speed * scale
+    keyframes = curve.keyframes
+    scale = float(keyframes.spacings.min()) ** -order
+    tick = float(np.spacing(keyframes.knots[-1])) * speed * scale
     if not closed_forms(curve):
         return STENCIL[order] * scale + STENCIL_TICKS[order] * tick
     report = curve.solve_report

@@ -40,16 +40,12 @@ def closed_forms(curve: Curve) -> bool:
     return analytic(curve) and curve.peer is None
 
 
-def shape_rates(curve: Curve, t: FloatArray) -> tuple[FloatArray, FloatArray]:
+def rates_since(curve: Curve, since: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Angular velocity and acceleration (m, 3) of the curve as it runs, whatever a library reports.
 
-    A peer's rates are a claim about its curve, so its orientations are differentiated.
+    A peer's rates are a claim about its curve, so its orientations are differentiated.  At times since
+    the first keyframe (m,): Unix times leave no digits inside a segment.
     """
-    return rates_since(curve, curve.since(t))
-
-
-def rates_since(curve: Curve, since: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """The same at times since the first keyframe: Unix times leave no digits inside a segment."""
     if closed_forms(curve):
         return curve.inner(since, 1)[:, 0], curve.inner(since, 2)[:, 0]
     return stencil.rates(curve._orientation, since, curve.keyframes.knots)

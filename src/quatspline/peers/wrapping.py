@@ -1,4 +1,4 @@
-"""What the wrappers of third-party schemes share: silence, versions, frames, pairs of keyframes.
+"""What the wrappers of third-party schemes share: silence, versions, frames.
 
 A wrapper calls the library as its documentation says, on its fastest documented path, and changes
 nothing but the form of numbers: times since the first keyframe, quaternions (m, 4) scalar first, rates
@@ -87,12 +87,6 @@ def with_return(keyframes: Keyframes) -> FloatArray:
     """The keyframes (n, 4); closed (n + 1, 4), the first one repeated with the closing sign."""
     q = keyframes.quaternions
     return np.concatenate([q, keyframes.sign * q[:1]]) if keyframes.closed else q
-
-
-def pairs(knots: FloatArray, t: FloatArray) -> tuple[Any, FloatArray]:
-    """Segment and local parameter of each time, for libraries that interpolate between two."""
-    segment = np.clip(np.searchsorted(knots, t, side="right") - 1, 0, len(knots) - 2)
-    return segment, (t - knots[segment]) / (knots[segment + 1] - knots[segment])
 
 
 def reflected(keyframes: Keyframes) -> tuple[FloatArray, FloatArray]:
