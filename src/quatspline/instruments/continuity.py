@@ -17,7 +17,7 @@ import pandas as pd
 
 from quatspline.curve import Curve
 from quatspline.instruments.breaks import UNBROKEN, breaks
-from quatspline.instruments.derivatives import closed_forms, one_sided, rates_since
+from quatspline.instruments.derivatives import closed_forms, rates_since
 from quatspline.instruments.trials import Row
 from quatspline.quaternion import FloatArray
 
@@ -45,6 +45,12 @@ STENCIL_TICKS = (32.0, 1e5, 1e8, 1e10)
 """... and stencils have weights of up to 80 and 360 in all at an end, over steps of 6e-3 to the order."""
 FALLING = 0.05
 """So do those that fall to this share when the step falls to a tenth."""
+
+ONE_SIDED = 4
+"""Points of the one-sided extrapolation to a knot: exact for cubics."""
+LIMIT = np.array([4.0, -6.0, 4.0, -1.0])
+SLOPE = np.array([-13.0 / 3.0, 19.0 / 2.0, -7.0, 11.0 / 6.0])
+"""Weights of values at h, 2h, 3h, 4h for the value and for h times the slope at 0."""
 
 DENSE = 7
 """Samples a segment for the size of a quantity."""
@@ -114,8 +120,24 @@ def _jumps(curve: Curve, at: FloatArray, step: FloatArray) -> list[FloatArray]:
     """The jump at every knot, of every order."""
     if at.size == 0:
         return [np.zeros(0)] * len(QUANTITIES)
-    after, before = (one_sided(curve, at, step, side) for side in (1, -1))
+    after, before = (_one_sided(curve, at, step, side) for side in (1, -1))
     return [np.linalg.norm(a - b, axis=-1) for a, b in zip(after, before, strict=True)]
+
+
+def _one_sided(curve: Curve, at: FloatArray, step: FloatArray, side: int) -> list[FloatArray]:
+    """Limits at knots ``at`` (m,) from one side (+1 or -1): q (m, 4), then three derivatives (m, 3).
+
+    Knots are times since the first keyframe; beyond a closed curve's seam its first segment goes on.
+    Values at 1 to 4 steps (m,) away are extrapolated; the last is the slope of the acceleration.
+    """
+    nodes = at[:, None] + side * step[:, None] * np.arange(1.0, ONE_SIDED + 1)
+    t, period = nodes.reshape(-1), curve.keyframes.knots[-1]
+    rates = rates_since(curve, np.where(t > period, t - period, t))
+    q, omega, alpha = (
+        values.reshape(*nodes.shape, -1) for values in (curve.inner(t)[:, 0], *rates)
+    )
+    limits = [np.einsum("j,mji->mi", LIMIT, values) for values in (q, omega, alpha)]
+    return [*limits, np.einsum("j,mji->mi", SLOPE, alpha) / (side * step[:, None])]
 
 
 def _sizes(curve: Curve) -> list[float]:
