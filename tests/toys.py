@@ -23,12 +23,6 @@ class Toy(Curve):
     def _fit(self, keyframes: Any) -> None:
         """Nothing to prepare."""
 
-    def located(self, t: FloatArray) -> tuple[Any, FloatArray]:
-        """Segment and local parameter of times since the first keyframe."""
-        knots = self.keyframes.knots
-        segment = np.clip(np.searchsorted(knots, t, side="right") - 1, 0, len(knots) - 2)
-        return segment, (t - knots[segment]) / np.diff(knots)[segment]
-
     def slerped(self, segment: Any, u: FloatArray) -> FloatArray:
         q = self.keyframes.quaternions
         return quaternion.slerp(q[segment], q[segment + 1], u)

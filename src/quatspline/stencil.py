@@ -15,6 +15,7 @@ import numpy as np
 
 from quatspline import quaternion
 from quatspline.inputs.arrays import FloatArray, IntArray
+from quatspline.keyframes import segment_of
 
 if TYPE_CHECKING:
     from quatspline.curve import Curve
@@ -49,7 +50,7 @@ def rates(
     orientation: Callable[[FloatArray], FloatArray], t: FloatArray, knots: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Body angular velocity and acceleration (m, 3) at t (m,) of a curve smooth between knots."""
-    segment = np.clip(np.searchsorted(knots, t, side="right") - 1, 0, len(knots) - 2)
+    segment = segment_of(knots, t)
     lo, hi = knots[segment], knots[segment + 1]
     step = np.minimum(STEP * (hi - lo), TURN / _speed(orientation, segment, knots))
     reach = POINTS // 2

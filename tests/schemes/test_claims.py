@@ -8,6 +8,7 @@ import pytest
 
 from quatspline import quaternion, stencil
 from quatspline.curve import Curve
+from quatspline.instruments.accuracy import measured_order
 from quatspline.quaternion import FloatArray
 from walks import (
     apart,
@@ -166,7 +167,7 @@ def test_order(scheme: Scheme) -> None:
         t = inside(knots, 4)
         t = t[(t > 3.0) & (t < 7.0)]
         errors.append(apart_up_to_sign(curve(t), smooth_motion(t)))
-    slope = -np.polyfit(np.log(sizes - 1), np.log(errors), 1)[0]
+    slope = measured_order(1.0 / (sizes - 1), errors)
     assert math.isclose(slope, scheme.order, abs_tol=ORDER), f"order {slope:.2f}, errors {errors}"
 
 

@@ -89,12 +89,6 @@ def with_return(keyframes: Keyframes) -> FloatArray:
     return np.concatenate([q, keyframes.sign * q[:1]]) if keyframes.closed else q
 
 
-def pairs(knots: FloatArray, t: FloatArray) -> tuple[Any, FloatArray]:
-    """Segment and local parameter of each time, for libraries that interpolate between two."""
-    segment = np.clip(np.searchsorted(knots, t, side="right") - 1, 0, len(knots) - 2)
-    return segment, (t - knots[segment]) / (knots[segment + 1] - knots[segment])
-
-
 def body_frame(q: FloatArray, rates: FloatArray) -> FloatArray:
     """World rates (m, 3) at orientations q (m, 4), seen from the body.
 
