@@ -14,7 +14,7 @@ from quatspline.figures import style
 from quatspline.instruments.accuracy import TARGETS, errors, knots, with_reach, with_slopes
 from quatspline.instruments.trials import Row, attempted, builder, facts
 from quatspline.quaternion import FloatArray
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 from quatspline.trajectories.smooth import SPAN, tumble
 
 TITLE = "Accuracy on a smooth motion"

@@ -13,7 +13,7 @@ from quatspline.figures.heat import ROW
 from quatspline.instruments.continuity import jumps, measured_continuity, speeds
 from quatspline.instruments.trials import Row, attempted, builder, facts, records
 from quatspline.quaternion import FloatArray
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 from quatspline.trajectories.smooth import SPAN, tumble
 from quatspline.trajectories.walks import walk
 

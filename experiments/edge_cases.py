@@ -12,7 +12,7 @@ from quatspline.figures import style
 from quatspline.figures.heat import ROW, label_cells
 from quatspline.instruments.edge_cases import edge_result
 from quatspline.instruments.trials import TIGHT, Row
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 from quatspline.trajectories.edge_cases import edge_cases
 
 TITLE = "Edge cases"

@@ -14,7 +14,7 @@ from quatspline.instruments.continuity import jumps, measured_continuity
 from quatspline.instruments.fairness import fairness
 from quatspline.instruments.trials import Row, attempted, builder
 from quatspline.quaternion import FloatArray
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 from quatspline.trajectories.sets import COUNT, step_sets, torque_sets
 
 TITLE = "Fairness: torque energy over the minimum"

@@ -14,7 +14,7 @@ from quatspline.figures.heat import ROW, log_heat
 from quatspline.instruments.invariance import INVARIANT, PROPERTIES, invariance
 from quatspline.instruments.trials import Row, attempted, builder, facts
 from quatspline.quaternion import FloatArray
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 from quatspline.trajectories.walks import walk
 
 TITLE = "Invariance"

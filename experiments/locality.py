@@ -13,7 +13,7 @@ from quatspline.figures import style
 from quatspline.figures.heat import ROW, log_heat
 from quatspline.instruments.locality import locality, responses
 from quatspline.instruments.trials import Row, attempted, builder, facts, records
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 from quatspline.trajectories.walks import walk
 
 TITLE = "Locality"

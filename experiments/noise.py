@@ -12,7 +12,7 @@ from quatspline.figures import style
 from quatspline.figures.heat import ROW
 from quatspline.instruments.noise import noise
 from quatspline.instruments.trials import Row, attempted, builder, facts
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 from quatspline.trajectories.walks import walk
 
 TITLE = "Response to noise"

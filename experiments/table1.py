@@ -10,7 +10,7 @@ from quatspline.catalogue import scheme
 from quatspline.curve import Curve
 from quatspline.instruments.trials import reason
 from quatspline.options import declared_by
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 from quatspline.timing.interleaved import Contender, interleaved
 from quatspline.timing.operations import OPERATIONS, executed, iterations
 from quatspline.timing.protocols import PROTOCOLS, Protocol, frames

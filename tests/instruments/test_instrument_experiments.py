@@ -8,8 +8,8 @@ import pandas as pd
 import pytest
 
 from quatspline.catalogue import load
+from quatspline.cli import running
 from quatspline.figures import style
-from quatspline.runs import running
 from quatspline.runs.experiment import Run, found
 from quatspline.runs.results import Results
 

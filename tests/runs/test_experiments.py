@@ -12,11 +12,11 @@ import pytest
 from desk import Desk
 from quatspline import quaternion
 from quatspline.catalogue import load, scheme, shipped
+from quatspline.cli import running
 from quatspline.figures import motions, style
 from quatspline.findings.findings import findings, reader
 from quatspline.instruments.blending import blending
-from quatspline.runs import running
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 from quatspline.timing.interleaved import interleaved
 from quatspline.timing.protocols import PROTOCOLS, frames
 from quatspline.trajectories.paper import CASES, KEY, SOLVE, TEAPOT
