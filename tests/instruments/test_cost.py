@@ -187,4 +187,4 @@ def test_over_budget_by_a_clock_carries_no_seconds(clock, monkeypatch):
     monkeypatch.setattr(peer, "__init__", slow)
     keyframes = walk(np.random.default_rng(0), 10 * speed.FEW, 20.0)[:, 0]
     row = next(speed.measured(speed._setup("set-up", keyframes), ["scipy-slerp"], 1))
-    assert row == speed.Row("scipy-slerp", failure="over budget")
+    assert row == speed.Timed("scipy-slerp", failure="over budget")

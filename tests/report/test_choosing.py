@@ -13,7 +13,8 @@ from quatspline.cli import running
 from quatspline.figures import style
 from quatspline.findings import choosing
 from quatspline.findings.findings import findings, reader
-from quatspline.runs.experiment import Run, experiments, found
+from quatspline.runs import running
+from quatspline.runs.experiment import Run, experiments, files
 from quatspline.runs.results import Results
 
 LESS = {"a": -1, "b": -1}
@@ -21,7 +22,7 @@ LESS = {"a": -1, "b": -1}
 
 @pytest.fixture
 def module():
-    return load(found()["choosing"], "experiment")
+    return load(files()["choosing"], "experiment")
 
 
 @pytest.fixture

@@ -72,7 +72,7 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Row:
+class Timed:
     """A timed contender, or why there is none."""
 
     name: str
@@ -83,7 +83,7 @@ class Row:
 
 def measured(
     task: Task, names: Iterable[str], rounds: int, seed: int = 0, least: float = LEAST
-) -> Iterator[Row]:
+) -> Iterator[Timed]:
     """Time the floors and schemes of a task interleaved; one row each."""
     made: dict[str, Contender] = {}
     items: dict[str, int] = {}
@@ -91,11 +91,11 @@ def measured(
         try:
             made[name], items[name] = contender_of(task, name)
         except OverBudget as error:
-            yield Row(name, failure=str(error))
+            yield Timed(name, failure=str(error))
         except Exception as error:  # what does not apply is a row with its reason
-            yield Row(name, failure=reason(error))
+            yield Timed(name, failure=reason(error))
     for name, timing in interleaved(made, rounds, seed, least).items():
-        yield Row(name, items[name], timing)
+        yield Timed(name, items[name], timing)
 
 
 def contender_of(task: Task, name: str) -> tuple[Contender, int]:
