@@ -7,6 +7,7 @@ from quatspline.families.arcs import set_arc
 from quatspline.families.nested import TRIANGLE, restored, set_parameter
 from quatspline.fitting.tangents import keyframe
 from quatspline.kernels.jit import REACH, fit_kernel
+from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.scalars import slerp
 from quatspline.keyframes import Keyframes
 from quatspline.segments import SegmentCurve
@@ -35,7 +36,7 @@ class BarryGoldman(SegmentCurve):
     support = 4
     constant_rate = "everywhere"
     family = TRIANGLE
-    operations = {"slerps per sample": 6, "logs per segment": 3}
+    operations = Operations(slerps=Per(sample=6), logs=Per(segment=3))
 
     def _fit(self, keyframes: Keyframes) -> None:
         self._solve(FIT)

@@ -9,6 +9,7 @@ import numpy as np
 from quatspline.families.circles import BIARC, SPLIT, combine, dot, set_circle, unit
 from quatspline.fitting.tangents import CHART, chart_velocities, keyframe, step
 from quatspline.kernels.jit import compiled, fit_kernel
+from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.scalars import mul
 from quatspline.keyframes import Keyframes
 from quatspline.segments import SegmentCurve
@@ -41,7 +42,7 @@ class Biarc(SegmentCurve):
     support = 4
     constant_rate = "everywhere"
     family = BIARC
-    operations = {"circle points per sample": 1, "logs per keyframe": 4}
+    operations = Operations(logs=Per(keyframe=4), others={"circle points": Per(sample=1)})
 
     def _fit(self, keyframes: Keyframes) -> None:
         self._solve(FIT)

@@ -39,6 +39,7 @@ from quatspline.kernels.jit import (
     inlined,
     sample_kernel,
 )
+from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.scalars import cross, mul
 from quatspline.keyframes import Keyframes
 from quatspline.quaternion import FloatArray
@@ -288,7 +289,7 @@ class MovingFrame(SegmentCurve):
     support = None
     constant_rate = "no"
     family = FAMILIES[3]
-    operations = {"nearest rotations per sample": 1}
+    operations = Operations(others={"nearest rotations": Per(sample=1)})
     departs = {"test_keeps_given_signs": "a frame carries no sign"}
 
     def _fit(

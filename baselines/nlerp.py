@@ -7,6 +7,7 @@ from numba import carray
 from quatspline.families.chords import SIZE, set_acceleration, set_chord, set_point, set_velocity
 from quatspline.fitting.tangents import keyframe
 from quatspline.kernels.jit import BLOCK, REACH, ROWS, fit_kernel, sample_kernel
+from quatspline.kernels.operations import Operations, Per
 from quatspline.keyframes import Keyframes
 from quatspline.segments import Family, SegmentCurve
 
@@ -65,7 +66,7 @@ class Nlerp(SegmentCurve):
     support = 2
     constant_rate = "no"
     family = Family(SIZE, near=_KERNELS, far=_KERNELS)
-    operations = {"square roots per sample": 1, "logs per segment": 1}
+    operations = Operations(roots=Per(sample=1), logs=Per(segment=1))
 
     def _fit(self, keyframes: Keyframes) -> None:
         self._solve(FIT)

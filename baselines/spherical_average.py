@@ -13,6 +13,7 @@ from quatspline.fitting.block_tridiagonal import backward, forward, workspace
 from quatspline.fitting.mean_leaps import leaps, share_a_half
 from quatspline.fitting.tangents import keyframe, moved
 from quatspline.kernels.jit import CHANGE, ITERATIONS, RESIDUAL, compiled, fit_kernel, inlined
+from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.scalars import exp, log_between, mul
 from quatspline.keyframes import Keyframes
 from quatspline.options import Count, OnFailure, Positive, Stop
@@ -58,7 +59,7 @@ class SphericalAverage(SegmentCurve):
     constant_rate = "everywhere"
     iterative = True
     family = SPHERICAL_MEAN
-    operations = {"logs per sample": 12, "logs per keyframe and iteration": 3}
+    operations = Operations(logs=Per(sample=12), iteration=Operations(logs=Per(keyframe=3)))
     departs = {
         "test_keeps_given_signs": "controls of so long a step share no half sphere: no solution found"
     }

@@ -12,7 +12,7 @@ from quatspline.figures import style
 from quatspline.instruments.accuracy import TARGETS, errors, knots, with_reach, with_slopes
 from quatspline.instruments.trials import Row, attempted, builder, facts
 from quatspline.quaternion import FloatArray
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 from quatspline.timing.budget import Budget, calls
 from quatspline.trajectories.smooth import SPAN, tumble
 
@@ -48,9 +48,9 @@ def cells(run: Run) -> list[dict[str, Any]]:
 
 
 def measure_cell(run: Run, knots: str, scheme: str) -> list[Row]:
-    rows, levels = [], _levels(run, knots, scheme)
-    refusals = _refusals(scheme, levels)
-    for count in levels:
+    rows, counts = [], levels(run, knots, scheme)
+    refusals = _refusals(scheme, counts)
+    for count in counts:
         base = {"knots": knots, "scheme": scheme, "keyframes": count, "spacing": SPAN / (count - 1)}
         measure = partial(_measured, run, knots, scheme, count)
         failure = refusals.get(count)
@@ -58,16 +58,16 @@ def measure_cell(run: Run, knots: str, scheme: str) -> list[Row]:
     return rows
 
 
-def _refusals(name: str, levels: tuple[int, ...]) -> dict[int, str]:
+def _refusals(name: str, counts: tuple[int, ...]) -> dict[int, str]:
     """Why levels are not measured; none where the finest is, which costs most."""
     cls = found()[name].scheme
-    if cls is None or BUDGET.refusal(cls, levels[-1], SAMPLED) is None:
+    if cls is None or BUDGET.refusal(cls, counts[-1], SAMPLED) is None:
         return {}
-    reasons = {count: BUDGET.refusal(cls, count, SAMPLED) for count in levels}
+    reasons = {count: BUDGET.refusal(cls, count, SAMPLED) for count in counts}
     return {count: reason for count, reason in reasons.items() if reason}
 
 
-def _levels(run: Run, knots: str, scheme: str) -> tuple[int, ...]:
+def levels(run: Run, knots: str, scheme: str) -> tuple[int, ...]:
     cls = found()[scheme].scheme
     whole = not run.quick or (knots == KINDS[0] and cls is not None and cls.peer is None)
     return FULL if whole else QUICK

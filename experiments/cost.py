@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from quatspline import catalogue
 from quatspline.curve import Curve
 from quatspline.figures import style
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 from quatspline.timing.budget import Budget, Call, seconds
 from quatspline.timing.cost import SPREAD, Task, costs, fitted_whole, operations, peak_bytes
 from quatspline.trajectories.smooth import tumble

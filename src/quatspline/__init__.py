@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from quatspline.catalogue import build, scheme, schemes
     from quatspline.comparing import compare
     from quatspline.curve import Curve
+    from quatspline.kernels.operations import Operations, Per
     from quatspline.keyframes import Keyframes
     from quatspline.proposed.quartic import QuarticSpline
     from quatspline.solving import ConvergenceError, SolveReport
@@ -26,6 +27,8 @@ _HOMES = {
     "SolveReport": "quatspline.solving",
     "ConvergenceError": "quatspline.solving",
     "Keyframes": "quatspline.keyframes",
+    "Operations": "quatspline.kernels.operations",
+    "Per": "quatspline.kernels.operations",
     "QuarticSpline": "quatspline.proposed.quartic",
     "build": "quatspline.catalogue",
     "compare": "quatspline.comparing",
@@ -37,6 +40,8 @@ __all__ = [
     "ConvergenceError",
     "Curve",
     "Keyframes",
+    "Operations",
+    "Per",
     "QuarticSpline",
     "SolveReport",
     "__version__",

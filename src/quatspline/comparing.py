@@ -169,7 +169,7 @@ COLUMNS = [
 def _measured(name: str, keyframes: Keyframes, curves: dict[str, Curve]) -> list[Row]:
     """The row of one scheme; its curve is kept for timings and figures."""
     cls = scheme(name)
-    given = among(cls._fit, {"tolerance": TOLERANCE})
+    given = among(cls, {"tolerance": TOLERANCE})
     try:
         curve, note = solved(cls, keyframes, **given)
     except ConvergenceError as error:  # in words for a table

@@ -23,6 +23,7 @@ from quatspline.inputs.arrays import (
     checked_threads,
 )
 from quatspline.inputs.domain import Domain
+from quatspline.kernels.operations import UNSTATED, Operations
 from quatspline.log_curve import log_curve
 from quatspline.solving import SolveReport
 
@@ -94,8 +95,8 @@ class Curve(abc.ABC):
     """Keyframes beyond which experiments leave it out, on any machine: time or memory would not do."""
     orders: tuple[int, ...] = (0, 1, 2)
     """Orders that a call offers; a peer may lack some."""
-    operations: dict[str, float] = {}
-    """Counts that no machine changes: e.g. {"exps per sample": 3, "logs per keyframe": 1}."""
+    operations: Operations = UNSTATED
+    """Counts that no machine changes, e.g. ``Operations(exps=Per(sample=3), logs=Per(keyframe=1))``."""
     departs: ClassVar[dict[str, str]] = {}
     """Conformance checks that a scheme does not pass, a peer run as published as a rule, each with its reason."""
     rescue: ClassVar[dict[str, Any]] = {}
@@ -110,6 +111,8 @@ class Curve(abc.ABC):
         if "name" not in cls.__dict__:
             file = getattr(sys.modules.get(cls.__module__), "__file__", None) or cls.__name__
             cls.name = Path(file).stem.replace("_", "-")
+        if not isinstance(cls.operations, Operations):
+            raise TypeError(f"operations of {cls.name} is no Operations: {cls.operations!r}")
 
     def __init__(
         self,
@@ -320,7 +323,7 @@ class Curve(abc.ABC):
                 f"times[{i}] to times[{i + 1}] is {float(keyframes.spacings[i])!r}, not "
                 f"{float(keyframes.spacings[0])!r}: {self.name} takes uniform times only"
             )
-        self._options = options.checked(self.name, type(self)._fit, given)
+        self._options = options.checked(type(self), given)
         self._keyframes = keyframes
         self._domain = Domain(keyframes.times, float(keyframes.knots[-1]), keyframes.closed)
         self._widths = tuple((*keyframes.track_shape, width) for width in (4, 3, 3))
@@ -329,7 +332,7 @@ class Curve(abc.ABC):
             self._parts: tuple[Curve, ...] = ()
             self._fit(keyframes, **self._options)
         else:
-            known = options.declared(type(self)._fit)
+            known = options.declared_by(type(self))
             excused = {"on_failure": "return"} if "on_failure" in known else {}
             self._parts = tuple(
                 type(self).from_keyframes(keyframes.track(k), **self._options | excused)

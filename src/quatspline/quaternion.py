@@ -14,14 +14,11 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from quatspline.inputs.arrays import FloatArray
 from quatspline.kernels import scalars as p
 from quatspline.kernels.jit import compiled
-
-IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 
 ANTIPODAL = 4 * float(np.finfo(float).eps)
 """Quaternions whose sum is shorter than this have no shortest arc between them."""
@@ -142,7 +139,7 @@ def rotate(q: ArrayLike, v: ArrayLike) -> FloatArray:
     return _apply(_rotate, (q, 4), (v, 3), width=3)
 
 
-def between(u: ArrayLike, v: ArrayLike) -> FloatArray:
+def shortest_rotation(u: ArrayLike, v: ArrayLike) -> FloatArray:
     """The least rotation (..., 4) that turns direction u (..., 3) into direction v (..., 3).
 
     Stable for nearly parallel directions.  Opposite directions turn half a turn about an axis
@@ -161,7 +158,7 @@ def between(u: ArrayLike, v: ArrayLike) -> FloatArray:
             raise ValueError(f"{name} has a direction of length zero")
         vector = vector / largest  # squares of very small or large numbers leave float64
         directions.append(vector / np.linalg.norm(vector, axis=-1, keepdims=True))
-    return _apply(_between, (directions[0], 3), (directions[1], 3), width=4)
+    return _apply(_shortest_rotation, (directions[0], 3), (directions[1], 3), width=4)
 
 
 def right_jacobian(r: ArrayLike) -> FloatArray:
@@ -258,7 +255,7 @@ def _rotate(q, v, out):
 
 
 @compiled
-def _between(u, v, out):
+def _shortest_rotation(u, v, out):
     for i in range(out.shape[0]):
         x, y, z = u[i, 0], u[i, 1], u[i, 2]
         # half-angle form: |u + v| = 2 cos(angle/2), |u - v| = 2 sin(angle/2)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import copy
 import importlib
-import subprocess
 import sys
 
 import numpy as np
 import pytest
 
 import quatspline as qs
+from processes import python
 from quatspline.system.moved import MOVED, today
 from walks import walk
 
@@ -38,8 +38,7 @@ def test_old_names_leave_the_public_functions_alone() -> None:
         "import quatspline as qs, quatspline.registry, quatspline.report.results\n"
         "print(callable(qs.schemes), callable(qs.scheme), qs.registry.found is qs.catalogue.found)"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["True"] * 3
+    assert python(code).split() == ["True"] * 3
 
 
 def test_a_class_pickles_before_any_catalogue_saw_it() -> None:
@@ -51,8 +50,7 @@ def test_a_class_pickles_before_any_catalogue_saw_it() -> None:
         "twin = pickle.loads(pickle.dumps(curve))\n"
         "print((twin(0.3) == curve(0.3)).all(), 'quatspline.catalogue' in sys.modules)"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["True", "False"]
+    assert python(code).split() == ["True", "False"]
 
 
 @pytest.mark.parametrize("name", ["quartic", "squad", "kim", "scipy-slerp"])

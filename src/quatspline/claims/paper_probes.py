@@ -86,7 +86,7 @@ def operations_over_quartic(
 def _operations(name: str, protocol: Protocol, case: str, frames: int) -> float:
     keyframes = CASES[case].keyframes()
     cls = scheme(name)
-    curve = cls.from_keyframes(keyframes, **among(cls._fit, SOLVE))
+    curve = cls.from_keyframes(keyframes, **among(cls, SOLVE))
     counts = executed(curve, frames, frames if protocol == "per-frame" else 1).total
     return counts["exps"] + counts["logs"] + SLERP * counts["slerps"]
 

@@ -62,7 +62,7 @@ def motion_table(case: PaperCase, schemes: tuple[str, ...]) -> pd.DataFrame:
     rows = []
     for name in schemes:
         cls = scheme(name)
-        curve = cls.from_keyframes(case.keyframes(), **among(cls._fit, SOLVE))
+        curve = cls.from_keyframes(case.keyframes(), **among(cls, SOLVE))
         dense = np.linspace(*curve.domain, LOG_SAMPLES)
         grids = {"frames": case.frames(case.rows[0].frames), "log": dense}
         if name == schemes[0]:

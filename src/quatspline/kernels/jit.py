@@ -44,6 +44,10 @@ ROWS = 64
 CONSTANTS = 2
 """The first row of the segment's constants."""
 
+LANES = 4
+"""Constants are spread over a row by vectors of so many, the widest that a core stores at once: BLOCK is a
+multiple."""
+
 RESULT = ROWS - 4
 """The first row of the result: w, x, y, z of a quaternion or x, y, z of a rate."""
 
@@ -209,6 +213,23 @@ def on_stack(typing: Any, count: Any) -> Any:
         return builder.bitcast(space, context.get_value_type(_sheet))
 
     return _sheet(count), generate
+
+
+@intrinsic
+def splat(typing: Any, sheet: Any, at: Any, value: Any) -> Any:
+    """Store LANES copies of a value from a place of a sheet on; a loop would store one by one."""
+
+    def generate(context: Any, builder: Any, typed: Any, values: Any) -> Any:
+        pointer, place, number = values
+        vector = ir.VectorType(ir.DoubleType(), LANES)
+        nothing, lane = ir.Constant(vector, ir.Undefined), ir.IntType(32)
+        one = builder.insert_element(nothing, number, lane(0))
+        every = ir.Constant(ir.VectorType(lane, LANES), [0] * LANES)
+        where = builder.bitcast(builder.gep(pointer, [place]), vector.as_pointer())
+        builder.store(builder.shuffle_vector(one, nothing, every), where, align=8)
+        return context.get_dummy_value()
+
+    return types.void(_sheet, types.intp, types.float64), generate
 
 
 @intrinsic

@@ -62,7 +62,7 @@ MOVED = {
     "report.targets": "findings.targets",
     "report.teapot": "figures.teapot",
     "rescue": "instruments.rescue",
-    "running": "runs.running",
+    "running": "cli.running",
     "stamps": "inputs.stamps",
     "sweeps": "runs.sweeps",
     "trajectories.edges": "trajectories.edge_cases",

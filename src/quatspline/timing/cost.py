@@ -19,9 +19,10 @@ from numpy.typing import NDArray
 
 from quatspline.curve import Curve
 from quatspline.instruments.trials import reason
+from quatspline.kernels.operations import UNSTATED
 from quatspline.timing.budget import OVER, Budget, Call, Job, rungs
 from quatspline.timing.interleaved import timed
-from quatspline.timing.operations import OPERATIONS, SAMPLE, per_keyframe, per_sample
+from quatspline.timing.operations import OPERATIONS, per_keyframe, per_sample
 
 SLOW = 0.05
 """Calls that take this share of the budget are timed once: rounds of them would exceed it."""
@@ -126,9 +127,9 @@ def operations(curve: Curve, unit: str) -> dict[str, float]:
 
     NaN for a scheme that states none.
     """
-    if not curve.operations:
+    if curve.operations == UNSTATED:
         return dict.fromkeys(OPERATIONS, math.nan)
-    return per_sample(curve) if unit == SAMPLE else per_keyframe(curve)
+    return per_sample(curve) if unit == "sample" else per_keyframe(curve)
 
 
 def _status(field: str) -> float:

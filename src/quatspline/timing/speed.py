@@ -64,7 +64,7 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Row:
+class Timed:
     """A timed contender, or why there is none."""
 
     name: str
@@ -75,7 +75,7 @@ class Row:
 
 def measured(
     task: Task, names: Iterable[str], rounds: int, seed: int = 0, least: float = LEAST
-) -> Iterator[Row]:
+) -> Iterator[Timed]:
     """Time the floors and schemes of a task interleaved; one row each."""
     made: dict[str, Contender] = {}
     items: dict[str, int] = {}
@@ -83,11 +83,11 @@ def measured(
         try:
             made[name], items[name] = contender_of(task, name)
         except OverBudget as error:
-            yield Row(name, failure=str(error))
+            yield Timed(name, failure=str(error))
         except Exception as error:  # what does not apply is a row with its reason
-            yield Row(name, failure=reason(error))
+            yield Timed(name, failure=reason(error))
     for name, timing in interleaved(made, rounds, seed, least).items():
-        yield Row(name, items[name], timing)
+        yield Timed(name, items[name], timing)
 
 
 def contender_of(task: Task, name: str) -> tuple[Contender, int]:
@@ -156,7 +156,7 @@ def _practical(name: str, count: int, samples: int = 0) -> type[Curve]:
 
 def _curve(name: str, keyframes: FloatArray) -> Curve:
     cls = _practical(name, len(keyframes))
-    return cls(None, keyframes, **among(cls._fit, OPTIONS))
+    return cls(None, keyframes, **among(cls, OPTIONS))
 
 
 def evaluation(
@@ -216,7 +216,7 @@ def long_set_up(name: str, keyframes: FloatArray) -> Task:
 
     def work(who: str) -> Callable[[int], Contender]:
         cls = _practical(who, len(keyframes), samples=1)
-        make = partial(cls, None, keyframes, **among(cls._fit, OPTIONS))
+        make = partial(cls, None, keyframes, **among(cls, OPTIONS))
         return lambda items: repeated(lambda: make()(t))
 
     return Task(name, "keyframe", len(keyframes), len(keyframes), 4, work)
