@@ -168,7 +168,7 @@ def test_speed_leaves_out_libraries_by_counts_alone(monkeypatch):
     monkeypatch.setattr(time, "process_time", never)
     keyframes = walk(np.random.default_rng(0), 100, 20.0)[:, 0]
     row = next(speed.measured(speed.set_up("set-up", keyframes), ["scipy-slerp"], 1))
-    assert row == speed.Row("scipy-slerp", failure="over budget")
+    assert row == speed.Timed("scipy-slerp", failure="over budget")
 
 
 @pytest.mark.parametrize(
