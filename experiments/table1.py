@@ -9,7 +9,7 @@ import pandas as pd
 from quatspline.catalogue import scheme
 from quatspline.curve import Curve
 from quatspline.instruments.trials import reason
-from quatspline.options import declared_by
+from quatspline.options import among
 from quatspline.runs.experiment import Run
 from quatspline.timing.interleaved import Contender, interleaved
 from quatspline.timing.operations import OPERATIONS, executed, iterations
@@ -57,8 +57,7 @@ def measure(run: Run) -> pd.DataFrame:
 
 def _options(name: str) -> dict[str, Any]:
     """The paper's tolerance and stop rule, as far as the scheme has them."""
-    known = declared_by(scheme(name))
-    return {option: value for option, value in SOLVE.items() if option in known}
+    return among(scheme(name), SOLVE)
 
 
 def group(

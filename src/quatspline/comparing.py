@@ -21,12 +21,11 @@ from quatspline.instruments.fairness import fairness
 from quatspline.instruments.rescue import solved
 from quatspline.instruments.trials import Row, attempted, facts
 from quatspline.keyframes import Keyframes
-from quatspline.options import declared_by
+from quatspline.options import among
 from quatspline.runs.experiment import Run
 from quatspline.solving import ConvergenceError
 from quatspline.system.stdout import say
-from quatspline.timing.own_times import timed
-from quatspline.timing.practical import left_out
+from quatspline.timing.own_keyframes import left_out, seconds_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -131,7 +130,7 @@ def _compared(
         rows.append({"scheme": name} | row)
     table = pd.DataFrame(rows).reindex(columns=COLUMNS)
     table["keyframes_length"] = _steps(keyframes)
-    for name, seconds in timed(keyframes, curves).items():
+    for name, seconds in seconds_of(keyframes, curves).items():
         table.loc[table["scheme"] == name, list(seconds)] = list(seconds.values())
     for name in ENERGIES:
         table[f"{name}_over_least"] = _over_least(table[name])
@@ -170,7 +169,7 @@ COLUMNS = [
 def _measured(name: str, keyframes: Keyframes, curves: dict[str, Curve]) -> list[Row]:
     """The row of one scheme; its curve is kept for timings and figures."""
     cls = scheme(name)
-    given = {"tolerance": TOLERANCE} if "tolerance" in declared_by(cls) else {}
+    given = among(cls, {"tolerance": TOLERANCE})
     try:
         curve, note = solved(cls, keyframes, **given)
     except ConvergenceError as error:  # in words for a table

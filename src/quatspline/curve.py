@@ -143,12 +143,6 @@ class Curve(abc.ABC):
         curve._build(keyframes, given)
         return curve
 
-    @classmethod
-    def impractical(cls, count: int) -> str | None:
-        """Why experiments leave out so many keyframes; None where they do not."""
-        limit = cls.practical_keyframes
-        return f"over budget beyond {limit} keyframes" if limit and count > limit else None
-
     # -- what a scheme writes -------------------------------------------------------------------
 
     @abc.abstractmethod
@@ -194,6 +188,11 @@ class Curve(abc.ABC):
     def keyframes(self) -> kf.Keyframes:
         """The prepared keyframes."""
         return self._keyframes
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """The scheme's own options as given, a copy."""
+        return dict(self._options)
 
     @property
     def numeric_orders(self) -> tuple[int, ...]:

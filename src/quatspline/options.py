@@ -117,6 +117,12 @@ def _declared(fit: Callable[..., Any]) -> dict[str, inspect.Parameter]:
     }
 
 
+def among(scheme: type[Curve], wanted: Mapping[str, Any]) -> dict[str, Any]:
+    """Those of the wanted options that a scheme has."""
+    known = declared_by(scheme)
+    return {name: value for name, value in wanted.items() if name in known}
+
+
 def checked(scheme: type[Curve], given: Mapping[str, Any]) -> dict[str, Any]:
     """The given options, refused with a ValueError where a name or a value is not declared."""
     known = declared_by(scheme)
