@@ -6,6 +6,7 @@ from quatspline.families.arcs import SIZE as ARC
 from quatspline.families.arcs import set_arc
 from quatspline.families.nested import TRIANGLE, set_parameter
 from quatspline.kernels.jit import REACH, fit_kernel, inlined
+from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import keyframe, restored, slerp
 from quatspline.keyframes import Keyframes
 from quatspline.segments import SegmentCurve
@@ -34,7 +35,7 @@ class BarryGoldman(SegmentCurve):
     support = 4
     constant_rate = "everywhere"
     family = TRIANGLE
-    operations = {"slerps per sample": 6, "logs per segment": 3}
+    operations = Operations(slerps=Per(sample=6), logs=Per(segment=3))
 
     def _fit(self, keyframes: Keyframes) -> None:
         self._solve(FIT)

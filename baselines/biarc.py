@@ -9,6 +9,7 @@ import numpy as np
 from quatspline.families.circles import BIARC, FIRST, SECOND, SPLIT, set_circle
 from quatspline.fitting.tangents import CHART, chart_velocities, step
 from quatspline.kernels.jit import REACH, compiled, fit_kernel
+from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import (
     Vec,
     keyframe,
@@ -50,7 +51,7 @@ class Biarc(SegmentCurve):
     support = 4
     constant_rate = "everywhere"
     family = BIARC
-    operations = {"circle points per sample": 1, "logs per keyframe": 4}
+    operations = Operations(logs=Per(keyframe=4), others={"circle points": Per(sample=1)})
 
     def _fit(self, keyframes: Keyframes) -> None:
         self._solve(FIT)

@@ -9,6 +9,7 @@ import numpy as np
 
 from quatspline.families.circles import BLEND, FIRST, SECOND, SPLIT, set_circle
 from quatspline.kernels.jit import REACH, compiled, fit_kernel, inlined
+from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import keyframe, norm, unit
 from quatspline.keyframes import Keyframes
 from quatspline.segments import SegmentCurve
@@ -46,7 +47,7 @@ class CircularBlend(SegmentCurve):
     support = 4
     constant_rate = "everywhere"
     family = BLEND
-    operations = {"circle points per sample": 2, "slerps per sample": 1}
+    operations = Operations(slerps=Per(sample=1), others={"circle points": Per(sample=2)})
 
     def _fit(self, keyframes: Keyframes, *, blend: Literal["smooth", "linear"] = "smooth") -> None:
         self.continuity = 2 if blend == "smooth" else 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import Annotated
 
@@ -27,6 +28,7 @@ from quatspline.kernels.jit import (
     inlined,
     sample_kernel,
 )
+from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import keyframe, put_quat, put_vec
 from quatspline.keyframes import Keyframes
 from quatspline.options import AtMost, Count
@@ -169,16 +171,16 @@ class FastSlerp(SegmentCurve):
     support = 2
     constant_rate = "no"
     family = Family(SIZE, near=_KERNELS, far=_KERNELS)
-    operations = {
-        "polynomial terms per sample": 16,
-        "square roots per sample": 1,
-        "logs per segment": 1,
-    }
+    operations = Operations(
+        roots=Per(sample=1), logs=Per(segment=1), others={"polynomial terms": Per(sample=16)}
+    )
 
     angle_error: float
     """The largest angle from slerp over all steps up to half a turn, measured, in rad."""
 
     def _fit(self, keyframes: Keyframes, *, terms: Annotated[Count, AtMost(1000)] = 8) -> None:
-        self.operations = {**type(self).operations, "polynomial terms per sample": 2 * terms}
+        self.operations = replace(
+            self.operations, others={"polynomial terms": Per(sample=2 * terms)}
+        )
         last, self.angle_error = _balanced(terms)
         self._solve(FIT, np.array([terms, last]))

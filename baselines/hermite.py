@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from quatspline.families.cumulative import CUMULATIVE, set_base, set_factor
 from quatspline.fitting.tangents import CHART, SECANT, chart_velocities
 from quatspline.kernels.jit import REACH, fit_kernel
+from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import exp, keyframe, log, vec_at
 from quatspline.keyframes import Keyframes
 from quatspline.segments import SegmentCurve
@@ -48,7 +50,7 @@ class Hermite(SegmentCurve):
     support = 4
     constant_rate = "everywhere"
     family = CUMULATIVE
-    operations = {"exps per sample": 3, "logs per keyframe": 5, "exps per keyframe": 2}
+    operations = Operations(exps=Per(sample=3, keyframe=2), logs=Per(keyframe=5))
 
     def _fit(
         self,
@@ -59,7 +61,7 @@ class Hermite(SegmentCurve):
     ) -> None:
         if window == 5:
             self.support = 6
-            self.operations = {**type(self).operations, "logs per keyframe": 9}
+            self.operations = replace(self.operations, logs=Per(keyframe=9))
         self._solve(FIT, np.array([window, SECANT if ends == "secant" else CHART]))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from quatspline.families.arcs import ARC, SIZE, set_arc
 from quatspline.kernels.driver import fit_tracks
 from quatspline.kernels.jit import REACH, fit_kernel
+from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import exp, keyframe, log, norm, unit
 from quatspline.keyframes import Keyframes
 from quatspline.options import AtMost, Count
@@ -51,10 +53,10 @@ class IncrementalSlerp(SegmentCurve):
     constant_rate = "everywhere"
     practical_keyframes = 100_000
     family = ARC
-    operations = {"slerps per sample": 1, "logs per segment": 65}
+    operations = Operations(slerps=Per(sample=1), logs=Per(segment=65))
 
     def _fit(self, keyframes: Keyframes, *, steps: Annotated[Count, AtMost(4096)] = 64) -> None:
-        self.operations = {**type(self).operations, "logs per segment": steps + 1}
+        self.operations = replace(self.operations, logs=Per(segment=steps + 1))
         self.fit_kernel, self.parameters = FIT, np.array([float(steps)])
         h, tracks = keyframes.spacings, keyframes.tracks
         points = tracks.shape[0] * h.size * steps
@@ -75,8 +77,7 @@ class IncrementalSlerp(SegmentCurve):
             report,
         )
         # Every step is a segment of its own.
-        knots = keyframes.knots[:-1, None] + h[:, None] / steps * np.arange(steps)
-        knots = np.append(knots, keyframes.knots[-1])
+        knots = np.append(keyframes.inside(np.arange(steps) / steps), keyframes.knots[-1])
         if (np.diff(knots) <= 0.0).any():
             raise ValueError(f"steps={steps}: float64 does not tell so many within a spacing apart")
         self._set_segments(segments, reach, knots)

@@ -33,6 +33,7 @@ from quatspline.fitting.bspline import (
 from quatspline.fitting.bspline_newton import copy, descend, moved, newton, settle
 from quatspline.inputs.arrays import at, real_array, refuse_infinite
 from quatspline.kernels.jit import CHANGE, ITERATIONS, REACH, RESIDUAL, compiled, fit_kernel
+from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import (
     exp,
     keyframe,
@@ -178,15 +179,11 @@ class Kim(SegmentCurve):
     iterative = True
     measures_itself = True
     family = CUMULATIVE
-    operations = {
-        "exps per sample": 3,
-        "exps per knot and iteration": 3,
-        "logs per segment and iteration": 1,
-        "exps per knot": 3,
-        "exps per segment": 4,
-        "logs per segment": 3,
-        "exps per solve": 3,
-    }
+    operations = Operations(
+        exps=Per(sample=3, knot=3, segment=4, solve=3),
+        logs=Per(segment=3),
+        iteration=Operations(exps=Per(knot=3), logs=Per(segment=1)),
+    )
 
     def _fit(
         self,

@@ -30,6 +30,7 @@ import numpy as np
 from quatspline import quaternion
 from quatspline.kernels.family import Family, family
 from quatspline.kernels.jit import compiled, inlined
+from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import (
     Mat,
     Quat,
@@ -200,7 +201,7 @@ class MovingFrame(SegmentCurve):
     support = None
     constant_rate = "no"
     family = FAMILIES[3]
-    operations = {"nearest rotations per sample": 1}
+    operations = Operations(others={"nearest rotations": Per(sample=1)})
     departs = {"test_keeps_given_signs": "a frame carries no sign"}
 
     def _fit(

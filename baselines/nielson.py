@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -20,6 +21,7 @@ from quatspline.kernels.jit import (
     fit_kernel,
     inlined,
 )
+from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import arc, keyframe, norm, put_quat, quat_at, slerp
 from quatspline.keyframes import Keyframes
 from quatspline.options import Count, OnFailure, Positive, Stop, per_keyframe
@@ -31,12 +33,11 @@ METHOD, BY_RESIDUAL, TOLERANCE, LIMIT, STATIONARY, TENSION = range(6)
 METHODS = ("jacobi", "gauss-seidel", "newton")
 JACOBI, GAUSS_SEIDEL, NEWTON = range(3)
 
-NEWTON_OPERATIONS: dict[str, float] = {
-    "slerps per sample": 6,
-    "exps per keyframe and iteration": 7,
-    "logs per keyframe and iteration": 2,
-    "logs per segment": 3,
-}
+NEWTON_OPERATIONS = Operations(
+    slerps=Per(sample=6),
+    logs=Per(segment=3),
+    iteration=Operations(exps=Per(keyframe=7), logs=Per(keyframe=2)),
+)
 
 STALLED = 4 * np.finfo(float).eps
 """A relative change this small moves nothing any more."""
@@ -80,13 +81,11 @@ class Nielson(SegmentCurve):
     iterative = True
     rescue = {"method": "newton"}
     family = TRIANGLE
-    operations = {
-        "slerps per sample": 6,
-        "slerps per inner keyframe and iteration": 2,
-        "slerps per inner keyframe": 3,
-        "slerps per segment": 2,
-        "logs per segment": 3,
-    }
+    operations = Operations(
+        slerps=Per(sample=6, inner_keyframe=3, segment=2),
+        logs=Per(segment=3),
+        iteration=Operations(slerps=Per(inner_keyframe=2)),
+    )
 
     def _fit(
         self,
@@ -113,10 +112,11 @@ class Nielson(SegmentCurve):
         if method == "newton":
             self.operations = NEWTON_OPERATIONS
         elif stop == "residual":  # a residual, of 3 slerps, before the first update and after each
-            more = {"inner keyframe and iteration": 5, "inner keyframe": 6}
-            self.operations = type(self).operations | {
-                f"slerps per {k}": n for k, n in more.items()
-            }
+            self.operations = replace(
+                self.operations,
+                slerps=Per(sample=6, inner_keyframe=6, segment=2),
+                iteration=Operations(slerps=Per(inner_keyframe=5)),
+            )
         limit = max_iterations
         switches = [METHODS.index(method), stop == "residual", tolerance, limit]
         parameters = np.array([*switches, ends == "stationary", *nu], dtype=float)

@@ -11,6 +11,7 @@ from quatspline.families.chords import (
 )
 from quatspline.kernels.family import family
 from quatspline.kernels.jit import REACH, fit_kernel, inlined
+from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import keyframe
 from quatspline.keyframes import Keyframes
 from quatspline.segments import SegmentCurve
@@ -63,7 +64,7 @@ class Nlerp(SegmentCurve):
     support = 2
     constant_rate = "no"
     family = family(SIZE, point, velocity=velocity, acceleration=acceleration)
-    operations = {"square roots per sample": 1, "logs per segment": 1}
+    operations = Operations(roots=Per(sample=1), logs=Per(segment=1))
 
     def _fit(self, keyframes: Keyframes) -> None:
         self._solve(FIT)

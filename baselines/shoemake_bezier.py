@@ -10,6 +10,7 @@ from quatspline.families.nested import TRIANGLE
 from quatspline.fitting.bezier import set_controls
 from quatspline.fitting.tangents import CHART, SECANT, end_velocity
 from quatspline.kernels.jit import REACH, compiled, fit_kernel, inlined
+from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import exp, keyframe, norm, put_quat, restored, slerp, unit
 from quatspline.keyframes import Keyframes
 from quatspline.segments import SegmentCurve
@@ -49,7 +50,7 @@ class ShoemakeBezier(SegmentCurve):
     constant_rate: Literal["everywhere", "interior", "no"] = "interior"
     non_uniform = False
     family = TRIANGLE
-    operations = {"slerps per sample": 6, "slerps per inner keyframe": 1, "logs per segment": 3}
+    operations = Operations(slerps=Per(sample=6, inner_keyframe=1), logs=Per(segment=3))
 
     def _fit(
         self,

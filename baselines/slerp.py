@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from quatspline.families.arcs import ARC, set_arc
 from quatspline.kernels.jit import REACH, fit_kernel
+from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import keyframe
 from quatspline.keyframes import Keyframes
 from quatspline.segments import SegmentCurve
@@ -26,7 +27,7 @@ class Slerp(SegmentCurve):
     support = 2
     constant_rate = "everywhere"
     family = ARC
-    operations = {"slerps per sample": 1, "logs per segment": 1}
+    operations = Operations(slerps=Per(sample=1), logs=Per(segment=1))
 
     def _fit(self, keyframes: Keyframes) -> None:
         self._solve(FIT)

@@ -28,6 +28,7 @@ from quatspline.kernels.jit import (
     fit_kernel,
     inlined,
 )
+from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import exp, keyframe, log, norm, put_quat, quat_at, unit, vec_at
 from quatspline.keyframes import Keyframes
 from quatspline.options import Count, OnFailure, Positive, Stop
@@ -73,7 +74,7 @@ class SphericalAverage(SegmentCurve):
     constant_rate = "everywhere"
     iterative = True
     family = SPHERICAL_MEAN
-    operations = {"logs per sample": 12, "logs per keyframe and iteration": 3}
+    operations = Operations(logs=Per(sample=12), iteration=Operations(logs=Per(keyframe=3)))
     departs = {
         "test_keeps_given_signs": "controls of so long a step share no half sphere: no solution found"
     }

@@ -11,6 +11,7 @@ from quatspline.families.arcs import set_arc
 from quatspline.families.nested import SQUAD
 from quatspline.fitting.tangents import CHART, SECANT, chart_velocities, step
 from quatspline.kernels.jit import REACH, compiled, fit_kernel
+from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import exp, keyframe, log, put_vec, vec_at
 from quatspline.keyframes import Keyframes
 from quatspline.segments import SegmentCurve
@@ -49,7 +50,7 @@ class Squad(SegmentCurve):
     support = 4
     constant_rate: Literal["everywhere", "no"] = "everywhere"
     family = SQUAD
-    operations = {"slerps per sample": 3, "logs per keyframe": 6, "exps per keyframe": 2}
+    operations = Operations(slerps=Per(sample=3), logs=Per(keyframe=6), exps=Per(keyframe=2))
 
     def _fit(
         self,

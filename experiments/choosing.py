@@ -12,9 +12,10 @@ from quatspline.claims.claim import DEPARTS, UNDECIDED
 from quatspline.figures import style
 from quatspline.findings import choosing
 from quatspline.findings.quotes import Reader
+from quatspline.kernels.operations import UNSTATED
 from quatspline.quaternion import FloatArray
 from quatspline.runs.running import Run
-from quatspline.timing.operations import SET_UP, stated
+from quatspline.timing.operations import of_a_keyframe, of_a_sample
 from quatspline.trajectories.sets import COUNT
 
 TITLE = "Which scheme"
@@ -224,9 +225,12 @@ def _cost(table: pd.DataFrame) -> pd.DataFrame:
 def _all_counted(name: str, unit: str) -> bool:
     """Whether a scheme states what a unit takes, and in nothing but the operations added here."""
     item = found().get(name)
-    operations = item.scheme.operations if item is not None and item.scheme is not None else {}
-    units = SET_UP if unit == "keyframe" else (unit,)
-    kinds = {entry.operation for entry in stated(operations) if entry.unit in units}
+    if item is None or item.scheme is None:
+        return False
+    own = item.scheme.operations
+    each = of_a_keyframe if unit == "keyframe" else of_a_sample
+    parts = (own, own.iteration or UNSTATED)
+    kinds = {kind for part in parts for kind, per in part.kinds.items() if each(per)}
     return bool(kinds) and kinds <= set(COUNTED)
 
 

@@ -66,10 +66,10 @@ def _peer(name: str) -> bool:
 
 def measure_cell(run: Run, case: str, scheme: str) -> list[Row]:
     base = {"case": case, "scheme": scheme}
-    return [base | row for row in attempted(partial(_measured, scheme, *_keyframes(run, case)))]
+    return [base | row for row in attempted(partial(_measured, scheme, *keyframes_of(run, case)))]
 
 
-def _keyframes(run: Run, case: str) -> tuple[FloatArray, FloatArray]:
+def keyframes_of(run: Run, case: str) -> tuple[FloatArray, FloatArray]:
     kind, which = case.split(", ")
     if kind == SMOOTH:
         t = np.linspace(0.0, SPAN, int(which.split()[0]))

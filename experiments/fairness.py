@@ -61,12 +61,12 @@ def _sets(run: Run, data: str) -> list[tuple[FloatArray, FloatArray]]:
 def measure_cell(run: Run, scheme: str, data: str) -> list[Row]:
     rows = []
     for index, (times, keyframes) in enumerate(_sets(run, data)):
-        measured = attempted(partial(_measured, scheme, times, keyframes))
+        measured = attempted(partial(measures, scheme, times, keyframes))
         rows += [{"scheme": scheme, "data": data, "set": index, **row} for row in measured]
     return rows
 
 
-def _measured(name: str, times: FloatArray, keyframes: FloatArray) -> list[Row]:
+def measures(name: str, times: FloatArray, keyframes: FloatArray) -> list[Row]:
     curve = builder(name, TOLERANCE)(times, keyframes)
     jump = measured_continuity(jumps(curve, (0, 1))) < 1
     return [{**fairness(curve), "velocity_jumps": jump, "version": version(name)}]

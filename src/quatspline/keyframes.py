@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from quatspline.inputs import stamps
-from quatspline.inputs.arrays import at, float_array, refuse_infinite, switch
+from quatspline.inputs.arrays import IntArray, at, float_array, refuse_infinite, switch
 from quatspline.inputs.orientations import directions, explain_norms, orientations
 from quatspline.inputs.stamps import shown
 from quatspline.kernels.jit import compiled
@@ -105,6 +105,27 @@ class Keyframes:
         """Whether all spacings are equal, up to the rounding of the given times."""
         return self.uneven is None
 
+    def inside(self, shares: int | ArrayLike) -> FloatArray:
+        """Times since the first keyframe inside every segment, (segments * n,), in the order of segments.
+
+        Parameters
+        ----------
+        shares : (n,) in [0, 1] of every segment; or n, for the middles of n equal parts, which lie
+            away from keyframes
+        """
+        if isinstance(shares, int | np.integer):
+            shares = (np.arange(shares) + 0.5) / shares
+        u = np.asarray(shares, dtype=float)
+        return (self.knots[:-1, None] + self.spacings[:, None] * u).reshape(-1)
+
+    def locate(self, t: FloatArray) -> tuple[IntArray, FloatArray]:
+        """Segment (m,) and local parameter u (m,) in [0, 1] of times t (m,) since the first keyframe.
+
+        A keyframe belongs to the segment that it begins, the last to the one that it ends.
+        """
+        segment = segment_of(self.knots, t)
+        return segment, (t - self.knots[segment]) / self.spacings[segment]
+
     def track(self, k: int) -> Keyframes:
         """The keyframes of one track."""
         own = slice(k, k + 1)
@@ -113,6 +134,11 @@ class Keyframes:
     def shaped(self) -> FloatArray:
         """The keyframes in the caller's shape (n, *track_shape, 4)."""
         return np.moveaxis(self.tracks, 0, 1).reshape(-1, *self.track_shape, 4)
+
+
+def segment_of(knots: FloatArray, t: FloatArray) -> IntArray:
+    """The segment (m,) between knots (n,) that times t (m,) lie in (see `Keyframes.locate`)."""
+    return np.clip(np.searchsorted(knots, t, side="right") - 1, 0, len(knots) - 2)
 
 
 def prepare(

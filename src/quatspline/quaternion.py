@@ -14,7 +14,7 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from quatspline.inputs.arrays import FloatArray
 from quatspline.kernels import jacobians, values
@@ -32,9 +32,6 @@ from quatspline.kernels.values import (
     vec,
     vec_at,
 )
-
-IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 
 ANTIPODAL = 4 * float(np.finfo(float).eps)
 """Quaternions whose sum is shorter than this have no shortest arc between them."""

@@ -51,6 +51,24 @@ def test_prepared_form() -> None:
     assert np.array_equal(frames.shaped(), frames.quaternions)
 
 
+def test_times_inside_segments_are_found_again() -> None:
+    frames = prepare([3.0, 4.0, 6.0], Q[:3])
+    assert np.array_equal(frames.inside(2), [0.25, 0.75, 1.5, 2.5])
+    assert np.array_equal(frames.inside([0.0, 0.75]), [0.0, 0.75, 1.0, 2.5])
+    segment, u = frames.locate(frames.inside([0.0, 0.25, 0.75]))
+    assert np.array_equal(segment, [0, 0, 0, 1, 1, 1])
+    assert np.array_equal(u, [0.0, 0.25, 0.75] * 2)
+    segment, u = frames.locate(frames.knots)
+    assert np.array_equal(segment, [0, 1, 1])
+    assert np.array_equal(u, [0.0, 0.0, 1.0])
+
+
+def test_times_inside_the_segment_of_the_return() -> None:
+    closed = prepare([0.0, 1.0, 2.0, 5.0], Q[:3], closed=True)
+    assert np.array_equal(closed.inside(1), [0.5, 1.5, 3.5])
+    assert np.array_equal(closed.locate(np.array([3.5, 5.0]))[0], [2, 2])
+
+
 def test_times_default_to_counting() -> None:
     assert np.array_equal(prepare(None, Q).times, np.arange(5.0))
     assert np.array_equal(prepare(None, Q, closed=True).times, np.arange(6.0))

@@ -126,7 +126,7 @@ def test_quick_orders_are_those_of_full_size(name, order):
 def test_quick_size_measures_libraries_at_fewer_keyframes():
     module = load(found()["accuracy"], "experiment")
     levels = [
-        module._levels(Run(quick=True), kind, name)
+        module.levels(Run(quick=True), kind, name)
         for kind, name in [("uniform", "kim"), ("jittered", "kim"), ("uniform", "scipy-slerp")]
     ]
     assert levels == [module.FULL, module.QUICK, module.QUICK]

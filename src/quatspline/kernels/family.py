@@ -123,7 +123,7 @@ def whole(n):
 def _bound(template: Callable[..., Any], **functions: Callable[..., Any]) -> Callable[..., Any]:
     """A copy of a template with functions as globals, in the file and at the line of the first."""
     first, *_ = functions.values()
-    name = "_".join([_called(f) for f in functions.values()]) + template.__name__
+    name = "_".join([called(f) for f in functions.values()]) + template.__name__
     code = template.__code__.replace(
         co_filename=first.__code__.co_filename,
         co_firstlineno=first.__code__.co_firstlineno,
@@ -133,10 +133,10 @@ def _bound(template: Callable[..., Any], **functions: Callable[..., Any]) -> Cal
     return FunctionType(code, {**template.__globals__, **functions}, name)
 
 
-def _called(function: Callable[..., Any]) -> str:
+def called(function: Callable[..., Any]) -> str:
     """A name that tells a function from others of the same code: its own, and what it closes over."""
     held = (cell.cell_contents for cell in function.__closure__ or ())
-    parts = (_called(x) if isinstance(x, FunctionType) else repr(x) for x in held)
+    parts = (called(x) if isinstance(x, FunctionType) else repr(x) for x in held)
     return "_".join([function.__name__, *parts])
 
 

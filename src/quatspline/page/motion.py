@@ -122,8 +122,7 @@ def grid(keyframes: Keyframes) -> FloatArray:
     """Sample times (m,) since the first keyframe."""
     knots = keyframes.knots
     each = int(np.clip(SAMPLES // len(knots), LEAST, MOST))
-    shares = np.arange(each) / each
-    inner = (knots[:-1, None] + keyframes.spacings[:, None] * shares).ravel()
+    inner = keyframes.inside(np.arange(each) / each)
     left = knots[1:] - BEFORE * keyframes.spacings
     return np.sort(np.concatenate([inner, left, knots[-1:]]))
 

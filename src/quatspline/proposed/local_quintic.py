@@ -9,6 +9,7 @@ import numpy as np
 from quatspline.families.rotation_vector import ROTATION_VECTOR, set_end_rates
 from quatspline.fitting.local_rates import chords, continued, local_rates
 from quatspline.kernels.jit import REACH, fit_kernel, inlined
+from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import put_vec, quat_at, vec_at
 from quatspline.keyframes import Keyframes
 from quatspline.options import AtMost, Count
@@ -44,7 +45,7 @@ class LocalQuinticSpline(SegmentCurve):
     support = 8
     constant_rate = "everywhere"
     family = ROTATION_VECTOR
-    operations = {"exps per sample": 1, "logs per keyframe": 3}
+    operations = Operations(exps=Per(sample=1), logs=Per(keyframe=3))
 
     def _fit(self, keyframes: Keyframes, *, window: Annotated[Count, AtMost(100)] = 3) -> None:
         self.order = 4 if window > 1 else 2

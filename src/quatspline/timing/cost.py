@@ -16,8 +16,9 @@ from pathlib import Path
 
 from quatspline.curve import Curve
 from quatspline.instruments.trials import reason
+from quatspline.kernels.operations import UNSTATED
 from quatspline.timing.interleaved import Contender, OverBudget, interleaved, repeated
-from quatspline.timing.operations import OPERATIONS, SAMPLE, per_keyframe, per_sample
+from quatspline.timing.operations import OPERATIONS, per_keyframe, per_sample
 
 Call = Callable[[], object]
 Task = Callable[[int], Call]
@@ -134,9 +135,9 @@ def operations(curve: Curve, unit: str) -> dict[str, float]:
 
     NaN for a scheme that states none.
     """
-    if not curve.operations:
+    if curve.operations == UNSTATED:
         return dict.fromkeys(OPERATIONS, math.nan)
-    return per_sample(curve) if unit == SAMPLE else per_keyframe(curve)
+    return per_sample(curve) if unit == "sample" else per_keyframe(curve)
 
 
 def _seconds(call: Call) -> float:
