@@ -14,7 +14,7 @@ from quatspline.figures import style
 from quatspline.instruments.accuracy import TARGETS, errors, knots, with_reach, with_slopes
 from quatspline.instruments.trials import Row, attempted, builder, facts
 from quatspline.quaternion import FloatArray
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 from quatspline.trajectories.smooth import SPAN, tumble
 
 TITLE = "Accuracy on a smooth motion"
@@ -51,7 +51,7 @@ def cells(run: Run) -> list[dict[str, Any]]:
 def measure_cell(run: Run, knots: str, scheme: str) -> list[Row]:
     rows = []
     seconds = 0.0
-    for level, count in enumerate(_levels(run, knots, scheme)):
+    for level, count in enumerate(levels(run, knots, scheme)):
         base = {"knots": knots, "scheme": scheme, "keyframes": count, "spacing": SPAN / (count - 1)}
         if GROWTH * seconds > BUDGET:
             rows.append(base | {"failure": f"over budget beyond {(count + 1) // 2} keyframes"})
@@ -63,7 +63,7 @@ def measure_cell(run: Run, knots: str, scheme: str) -> list[Row]:
     return rows
 
 
-def _levels(run: Run, knots: str, scheme: str) -> tuple[int, ...]:
+def levels(run: Run, knots: str, scheme: str) -> tuple[int, ...]:
     cls = found()[scheme].scheme
     whole = not run.quick or (knots == KINDS[0] and cls is not None and cls.peer is None)
     return FULL if whole else QUICK

@@ -14,7 +14,7 @@ from quatspline.findings import choosing
 from quatspline.findings.quotes import Reader
 from quatspline.kernels.operations import UNSTATED
 from quatspline.quaternion import FloatArray
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 from quatspline.timing.operations import of_a_keyframe, of_a_sample
 from quatspline.trajectories.sets import COUNT
 

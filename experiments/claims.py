@@ -27,7 +27,7 @@ from quatspline.curve import Curve
 from quatspline.figures import style
 from quatspline.figures.heat import ROW, label_cells, scheme_rows
 from quatspline.instruments.trials import Row
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 
 TITLE = "Claims and verdicts"
 PAPER = False

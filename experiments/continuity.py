@@ -61,11 +61,11 @@ def _is_slow(case: str, scheme: str) -> bool:
 
 
 def measure_cell(run: Run, case: str, scheme: str) -> list[Row]:
-    measured = partial(_measured, scheme, *_keyframes(run, case))
+    measured = partial(_measured, scheme, *keyframes_of(run, case))
     return attempted(measured, case=case, scheme=scheme)
 
 
-def _keyframes(run: Run, case: str) -> tuple[FloatArray, FloatArray]:
+def keyframes_of(run: Run, case: str) -> tuple[FloatArray, FloatArray]:
     kind, which = case.split(", ")
     if kind == SMOOTH:
         t = np.linspace(0.0, SPAN, int(which.split()[0]))

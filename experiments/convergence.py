@@ -21,7 +21,7 @@ from quatspline.instruments.convergence import (
 )
 from quatspline.instruments.trials import reason
 from quatspline.quaternion import FloatArray
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 from quatspline.trajectories.walks import walk
 
 TITLE = "Convergence of iterative schemes"

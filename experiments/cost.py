@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from quatspline import catalogue
 from quatspline.curve import Curve
 from quatspline.figures import style
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 from quatspline.timing.cost import Call, Task, costs, operations, peak_bytes
 from quatspline.trajectories.smooth import tumble
 

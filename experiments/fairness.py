@@ -14,7 +14,7 @@ from quatspline.instruments.continuity import jumps, measured_continuity
 from quatspline.instruments.fairness import fairness
 from quatspline.instruments.trials import Row, attempted, builder
 from quatspline.quaternion import FloatArray
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 from quatspline.trajectories.sets import COUNT, step_sets, torque_sets
 
 TITLE = "Fairness: torque energy over the minimum"
@@ -61,12 +61,12 @@ def _sets(run: Run, data: str) -> list[tuple[FloatArray, FloatArray]]:
 def measure_cell(run: Run, scheme: str, data: str) -> list[Row]:
     rows = []
     for index, (times, keyframes) in enumerate(_sets(run, data)):
-        measured = partial(_measured, scheme, times, keyframes)
+        measured = partial(measures, scheme, times, keyframes)
         rows += attempted(measured, scheme=scheme, data=data, set=index)
     return rows
 
 
-def _measured(name: str, times: FloatArray, keyframes: FloatArray) -> list[Row]:
+def measures(name: str, times: FloatArray, keyframes: FloatArray) -> list[Row]:
     curve = builder(name, TOLERANCE)(times, keyframes)
     jump = measured_continuity(jumps(curve, (0, 1))) < 1
     return [{**fairness(curve), "velocity_jumps": jump, "version": version(name)}]

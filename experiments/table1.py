@@ -9,8 +9,8 @@ import pandas as pd
 from quatspline.catalogue import scheme
 from quatspline.curve import Curve
 from quatspline.instruments.trials import reason
-from quatspline.options import declared
-from quatspline.runs.running import Run
+from quatspline.options import declared_by
+from quatspline.runs.experiment import Run
 from quatspline.timing.interleaved import Contender, interleaved
 from quatspline.timing.operations import OPERATIONS, executed, iterations
 from quatspline.timing.protocols import PROTOCOLS, Protocol, frames
@@ -49,7 +49,7 @@ def measure(run: Run) -> pd.DataFrame:
     ]
     tables = []
     for case, row, protocol in run.progress(groups, label="table1"):
-        tables.append(_group(run, case, row, protocol, schemes))
+        tables.append(group(run, case, row, protocol, schemes))
     for case in CASES.values():
         tables.append(_public(run, case, case.rows[1], schemes))
     return pd.concat(tables, ignore_index=True)
@@ -57,11 +57,11 @@ def measure(run: Run) -> pd.DataFrame:
 
 def _options(name: str) -> dict[str, Any]:
     """The paper's tolerance and stop rule, as far as the scheme has them."""
-    known = declared(scheme(name)._fit)
+    known = declared_by(scheme(name))
     return {option: value for option, value in SOLVE.items() if option in known}
 
 
-def _group(
+def group(
     run: Run, case: PaperCase, row: PaperRow, protocol: Protocol, schemes: tuple[str, ...]
 ) -> pd.DataFrame:
     """One case and protocol: all schemes timed against one another."""
@@ -122,7 +122,7 @@ def _timed(
     rows = []
     for name, timing in timings.items():
         base = {"case": label, "frames": row.frames, "scheme": name, "protocol": protocol}
-        counts = _counts(case, row.frames, protocol, name)
+        counts = counted(case, row.frames, protocol, name)
         apart = {key: counts.pop(key) for key in APART}
         measured = {
             "seconds_median": timing.median,
@@ -134,7 +134,7 @@ def _timed(
     return pd.DataFrame(rows)
 
 
-def _counts(case: PaperCase, count: int, protocol: Protocol, name: str) -> dict[str, Any]:
+def counted(case: PaperCase, count: int, protocol: Protocol, name: str) -> dict[str, Any]:
     """Iterations of one solve, and the operations of all frames: no machine changes them."""
     curve = scheme(name).from_keyframes(case.keyframes(), **_options(name))
     counts = executed(curve, count, count if protocol == "per-frame" else 1)

@@ -56,7 +56,7 @@ def watch(modules: list[Any]) -> None:
 
 
 def solve(self: SegmentCurve, kernel: Any, parameters: Any = ()) -> None:
-    frames, report = self._keyframes, np.zeros((1, 4))
+    frames, report = self.keyframes, np.zeros((1, 4))
     segments = np.zeros((1, frames.spacings.size, self.family.constants))
     parameters = np.asarray(parameters, dtype=float)
     sign = float(frames.signs[0])

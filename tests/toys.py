@@ -37,8 +37,12 @@ class Turn(Toy):
     def _orientation(self, t: FloatArray) -> FloatArray:
         return quaternion.exp(self.theta(t)[0][:, None] * AXIS)
 
-    def _velocity(self, t: FloatArray) -> FloatArray:
+    def omega(self, t: FloatArray) -> FloatArray:
+        """The body rate at times since the first keyframe."""
         return 2.0 * self.theta(t)[1][:, None] * AXIS
+
+    def _velocity(self, t: FloatArray) -> FloatArray:
+        return self.omega(t)
 
     def _acceleration(self, t: FloatArray) -> FloatArray:
         return 2.0 * self.theta(t)[2][:, None] * AXIS

@@ -9,6 +9,8 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
+from quatspline.system import moved
+
 if TYPE_CHECKING:
     from quatspline.catalogue import build, scheme, schemes
     from quatspline.comparing import compare
@@ -18,7 +20,7 @@ if TYPE_CHECKING:
     from quatspline.proposed.quartic import QuarticSpline
     from quatspline.solving import ConvergenceError, SolveReport
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 _HOMES = {
     "Curve": "quatspline.curve",
@@ -48,6 +50,9 @@ __all__ = [
     "scheme",
     "schemes",
 ]
+
+
+moved.install()
 
 
 def __getattr__(name: str) -> Any:

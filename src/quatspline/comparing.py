@@ -21,7 +21,7 @@ from quatspline.instruments.fairness import fairness
 from quatspline.instruments.rescue import solved
 from quatspline.instruments.trials import Row, attempted, facts
 from quatspline.keyframes import Keyframes
-from quatspline.options import declared
+from quatspline.options import declared_by
 from quatspline.runs.experiment import Run
 from quatspline.solving import ConvergenceError
 from quatspline.system.stdout import say
@@ -170,7 +170,7 @@ COLUMNS = [
 def _measured(name: str, keyframes: Keyframes, curves: dict[str, Curve]) -> list[Row]:
     """The row of one scheme; its curve is kept for timings and figures."""
     cls = scheme(name)
-    given = {"tolerance": TOLERANCE} if "tolerance" in declared(cls._fit) else {}
+    given = {"tolerance": TOLERANCE} if "tolerance" in declared_by(cls) else {}
     try:
         curve, note = solved(cls, keyframes, **given)
     except ConvergenceError as error:  # in words for a table

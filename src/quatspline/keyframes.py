@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from quatspline.inputs import stamps
-from quatspline.inputs.arrays import at, float_array, refuse_infinite, switch
+from quatspline.inputs.arrays import IntArray, at, float_array, refuse_infinite, switch
 from quatspline.inputs.orientations import directions, explain_norms, orientations
 from quatspline.inputs.stamps import shown
 from quatspline.kernels.jit import compiled
-from quatspline.quaternion import ANTIPODAL, FLIP, FloatArray, IntArray
+from quatspline.quaternion import ANTIPODAL, FLIP, FloatArray
 
 NORM_TOLERANCE = 1e-3
 """Quaternions off the unit sphere by more than this are refused; within it they are normalised."""

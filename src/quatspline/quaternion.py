@@ -14,14 +14,11 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from quatspline.inputs.arrays import FloatArray
 from quatspline.kernels import scalars as p
 from quatspline.kernels.jit import compiled
-
-IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 
 ANTIPODAL = 4 * float(np.finfo(float).eps)
 """Quaternions whose sum is shorter than this have no shortest arc between them."""

@@ -18,11 +18,11 @@ from typing import Any
 import numpy as np
 
 from quatspline.curve import Curve
+from quatspline.inputs.arrays import BoolArray, FloatArray
 from quatspline.kernels.driver import described, fit_tracks, sample
 from quatspline.kernels.jit import CHANGE, CONSTANTS, ITERATIONS, RESIDUAL, RESULT, Kernel
 from quatspline.kernels.misses import largest_misses
 from quatspline.kernels.scalars import NEAR
-from quatspline.quaternion import BoolArray, FloatArray
 from quatspline.solving import WRONG_FIXED_POINT, SolveReport
 
 CHUNK = 4096

@@ -128,7 +128,7 @@ def test_rates_that_a_library_reports_do_not_decide():
 
 def test_own_rates_are_held_against_the_curve():
     def fast(self, t):
-        return 1.02 * Turn._velocity(self, t)
+        return 1.02 * self.omega(t)
 
     rows = {row["quantity"]: row for row in own_rates(joined(0.0, 2, _velocity=fast))}
     assert rows["omega"]["relative"] == pytest.approx(0.02, rel=1e-6)
@@ -197,7 +197,7 @@ def test_what_is_known_of_schemes(name, case, k):
     if name not in schemes():
         pytest.skip(f"{name}: its library is not installed")
     module = load(shipped("experiments") / "continuity.py", "experiment")
-    curve = builder(name)(*module._keyframes(Run(quick=True), case))
+    curve = builder(name)(*module.keyframes_of(Run(quick=True), case))
     assert measured_continuity(jumps(curve)) == k
     stops = name == "interpolatepy-squad-c2"
     assert (speeds(curve)["least_key_speed"] < 1e-6) == stops

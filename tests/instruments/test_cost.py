@@ -11,7 +11,7 @@ import pytest
 
 from quatspline.catalogue import load, scheme, shipped
 from quatspline.curve import Curve
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 from quatspline.segments import LAZY
 from quatspline.timing import cost, speed
 from quatspline.trajectories.walks import walk

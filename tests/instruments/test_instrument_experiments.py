@@ -8,8 +8,8 @@ import pandas as pd
 import pytest
 
 from quatspline.catalogue import load
+from quatspline.cli import running
 from quatspline.figures import style
-from quatspline.runs import running
 from quatspline.runs.experiment import Run, files
 from quatspline.runs.results import Results
 
@@ -126,7 +126,7 @@ def test_quick_orders_are_those_of_full_size(name, order):
 def test_quick_size_measures_libraries_at_fewer_keyframes():
     module = load(files()["accuracy"], "experiment")
     levels = [
-        module._levels(Run(quick=True), kind, name)
+        module.levels(Run(quick=True), kind, name)
         for kind, name in [("uniform", "kim"), ("jittered", "kim"), ("uniform", "scipy-slerp")]
     ]
     assert levels == [module.FULL, module.QUICK, module.QUICK]

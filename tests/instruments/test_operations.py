@@ -15,7 +15,7 @@ import pytest
 from quatspline.catalogue import load, scheme, shipped
 from quatspline.curve import Curve
 from quatspline.kernels.operations import Operations, Per
-from quatspline.options import declared
+from quatspline.options import declared_by
 from quatspline.timing.operations import executed, iterations, per_keyframe, per_sample
 from quatspline.trajectories.paper import CASES, SOLVE
 
@@ -25,14 +25,14 @@ table1 = load(shipped("experiments") / "table1.py", "experiment")
 
 
 def solved(name: str, case: str, stop: str | None = None) -> Curve:
-    known = declared(scheme(name)._fit)
+    known = declared_by(scheme(name))
     options = SOLVE | ({"stop": stop} if stop else {})
     given = {key: value for key, value in options.items() if key in known}
     return scheme(name).from_keyframes(CASES[case].keyframes(), **given)
 
 
 def counts(case: str, frames: int, protocol: str, name: str) -> dict[str, Any]:
-    return table1._counts(CASES[case], frames, protocol, name)
+    return table1.counted(CASES[case], frames, protocol, name)
 
 
 def test_nielson_on_the_open_key_solves_for_three_of_five_keyframes() -> None:

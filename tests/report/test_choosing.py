@@ -9,10 +9,10 @@ import pandas as pd
 import pytest
 
 from quatspline.catalogue import load
+from quatspline.cli import running
 from quatspline.figures import style
 from quatspline.findings import choosing
 from quatspline.findings.findings import findings, reader
-from quatspline.runs import running
 from quatspline.runs.experiment import Run, experiments, files
 from quatspline.runs.results import Results
 

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from quatspline import comparing
-from quatspline.cli import commands, words
-from quatspline.runs import experiment, running
+from quatspline.cli import commands, running, words
+from quatspline.runs import experiment
 
 
 @pytest.fixture

@@ -16,7 +16,7 @@ import numpy as np
 
 from quatspline import quaternion
 from quatspline.curve import Curve
-from quatspline.quaternion import BoolArray, FloatArray, IntArray
+from quatspline.inputs.arrays import BoolArray, FloatArray, IntArray
 
 WINDOWS = 7
 """Windows of a segment, each overlapping the next by half."""

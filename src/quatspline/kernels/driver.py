@@ -13,9 +13,11 @@ import math
 import numpy as np
 from numba import carray
 
+from quatspline.inputs.arrays import FloatArray, IntArray
 from quatspline.kernels.jit import (
     BLOCK,
     CONSTANTS,
+    LANES,
     REACH,
     RESULT,
     ROWS,
@@ -25,8 +27,8 @@ from quatspline.kernels.jit import (
     compiled,
     inlined,
     on_stack,
+    splat,
 )
-from quatspline.quaternion import FloatArray, IntArray
 
 BATCH = 1024
 """Samples located at once, before their tracks are evaluated: within the first-level cache."""
@@ -125,9 +127,9 @@ def sample(address, order, curve, origin, slack, t, out):
                 for j in range(n):
                     sheet[0, j] = u[first + j]
                 if i == MIXED:
-                    _gather(sheet, knots, segments[k], where, first, n)
+                    _gather(pointer, knots, segments[k], where, first, n)
                 elif i != filled:
-                    _spread(sheet, knots, segments[k], i, BLOCK if t.size > 1 else 1)
+                    _spread(pointer, knots, segments[k], i, BLOCK if t.size > 1 else LANES)
                 filled = i
                 call_sample(address, pointer, n)
                 _store(sheet, order, own, first, n, tracks)
@@ -155,6 +157,8 @@ def _locate(knots, closed, origin, slack, t, segment, u, where, spans, owner):
             inside += (x >= lo) & (x < hi)
         count, i = inside, segment
         if inside < n:
+            count = _leading(lo, hi, origin, t[start:])
+        if count < LONG and inside < n:
             stop = start + n
             segment, around, bad = _one_by_one(
                 knots,
@@ -202,6 +206,15 @@ def _one_by_one(knots, closed, origin, slack, t, segment, u, where):
 
 
 @inlined
+def _leading(lo, hi, origin, t):
+    """Samples in a row from the first on that lie in a segment, at most a block less one."""
+    n = 0
+    while n < min(BLOCK - 1, t.size) and t[n] - origin >= lo and t[n] - origin < hi:
+        n += 1
+    return n
+
+
+@inlined
 def _run(where):
     """Samples and segment of the block that begins here: a long run, or all, mixed."""
     n = 1
@@ -209,7 +222,7 @@ def _run(where):
         n += 1
     if n >= LONG or n == where.size:
         return n, where[0]
-    return where.size, MIXED
+    return min(where.size, BLOCK - LANES), MIXED
 
 
 @inlined
@@ -239,22 +252,34 @@ def _find(knots, x, segment):
 def _spread(sheet, knots, segments, i, width):
     """The constants of segment i for all samples of a block."""
     rate = 1.0 / (knots[i + 1] - knots[i])
-    for j in range(width):
-        sheet[1, j] = rate
+    for j in range(0, width, LANES):
+        splat(sheet, BLOCK + j, rate)
     for c in range(segments.shape[1]):
         value = segments[i, c]
-        for j in range(width):
-            sheet[CONSTANTS + c, j] = value
+        for j in range(0, width, LANES):
+            splat(sheet, BLOCK * (CONSTANTS + c) + j, value)
 
 
 @inlined
 def _gather(sheet, knots, segments, where, first, n):
-    """The constants of each sample's own segment."""
-    for j in range(n):
-        i = where[first + j]
-        sheet[1, j] = 1.0 / (knots[i + 1] - knots[i])
+    """The constants of each sample's own segment, those of neighbours in one segment together.
+
+    Vectors reach beyond a run, where the next run overwrites them; a mixed block leaves room for the last.
+    """
+    start = 0
+    while start < n:
+        i = where[first + start]
+        stop = start + 1
+        while stop < n and where[first + stop] == i:
+            stop += 1
+        rate = 1.0 / (knots[i + 1] - knots[i])
+        for j in range(start, stop, LANES):
+            splat(sheet, BLOCK + j, rate)
         for c in range(segments.shape[1]):
-            sheet[CONSTANTS + c, j] = segments[i, c]
+            value = segments[i, c]
+            for j in range(start, stop, LANES):
+                splat(sheet, BLOCK * (CONSTANTS + c) + j, value)
+        start = stop
 
 
 @inlined

@@ -21,7 +21,7 @@ import numpy as np
 from quatspline.catalogue import scheme
 from quatspline.curve import Curve
 from quatspline.instruments.trials import reason
-from quatspline.options import declared
+from quatspline.options import declared_by
 from quatspline.quaternion import FloatArray
 from quatspline.timing.interleaved import (
     LEAST,
@@ -170,7 +170,7 @@ def tasks(rng: np.random.Generator, quick: bool) -> list[Task]:
 
 
 def _options(name: str) -> dict[str, Any]:
-    return {"tolerance": TOLERANCE} if "tolerance" in declared(scheme(name)._fit) else {}
+    return {"tolerance": TOLERANCE} if "tolerance" in declared_by(scheme(name)) else {}
 
 
 def _practical(name: str, count: int) -> type[Curve]:
