@@ -9,9 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from quatspline import quaternion
+from quatspline.catalogue import scheme
 from quatspline.curve import Curve
 from quatspline.keyframes import Keyframes, prepare
-from quatspline.options import Above, AtLeast, Count, checked, nearest, per_keyframe
+from quatspline.options import Above, AtLeast, Count, among, checked, nearest, per_keyframe
 from quatspline.solving import ConvergenceError, SolveReport
 from toys import Toy
 from walks import random_units, uneven, walk
@@ -285,6 +286,17 @@ class Choosy(Toy):
 )
 def test_good_options(options: dict[str, Any]) -> None:
     assert checked(Choosy, options) == options
+
+
+def test_options_among_those_wanted_are_the_declared() -> None:
+    assert among(Choosy, {"count": 2, "stop": "change", "flag": True}) == {"count": 2, "flag": True}
+
+
+def test_a_curve_tells_its_options() -> None:
+    curve = scheme("nielson")(None, walk(4, 20.0, seed=0), tolerance=1e-9)
+    assert curve.options == {"tolerance": 1e-9}
+    curve.options["tolerance"] = 1.0
+    assert curve.options == {"tolerance": 1e-9}
 
 
 @pytest.mark.parametrize(

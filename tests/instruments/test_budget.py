@@ -9,9 +9,11 @@ from collections.abc import Callable
 import numpy as np
 import pandas as pd
 import pytest
+from quatspline.runs.running import Run
 
 import quatspline as qs
 from quatspline import comparing
+from quatspline.catalogue import load, shipped
 from quatspline.timing import own_keyframes
 from quatspline.timing.budget import OVER, Budget, Call, Job, calls, rungs, seconds, too_many
 from quatspline.timing.own_keyframes import left_out
@@ -203,6 +205,23 @@ def test_work_is_counted_alike_every_time() -> None:
         work = {budget.work(qs.scheme(name), 1000, (400, 20, 20)) for _ in range(3)}
         assert len(work) == 1
         assert min(work) > 0.0
+
+
+def test_levels_of_accuracy_are_over_budget_by_what_is_practical_and_by_counts(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    module = load(shipped("experiments") / "accuracy.py", "experiment")
+    monkeypatch.setattr(module, "BUDGET", Budget(limit=5e5, meter=calls))
+    monkeypatch.setattr(module, "QUICK", (11, 21, 201))
+    monkeypatch.setattr(module, "FULL", (11, 21, 201))
+    run = Run(quick=True, schemes=["slerp", "min-torque", "splines-squad"])
+    found = {
+        name: [row.get("failure") for row in module.measure_cell(run, "uniform", name)]
+        for name in run.schemes
+    }
+    assert found["slerp"] == [None] * 3
+    assert found["min-torque"] == [None, None, "over budget beyond 200 keyframes"]
+    assert found["splines-squad"] == [None, None, OVER]
 
 
 def test_what_is_left_out_is_a_row_unless_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
