@@ -9,10 +9,10 @@ from typing import Annotated
 import numpy as np
 
 from quatspline.families.arcs import ARC, SIZE, set_arc
-from quatspline.fitting.tangents import keyframe, moved, step
 from quatspline.kernels.driver import fit_tracks
-from quatspline.kernels.jit import REACH, fit_kernel, inlined
+from quatspline.kernels.jit import REACH, fit_kernel
 from quatspline.kernels.operations import Operations, Per
+from quatspline.kernels.values import exp, keyframe, log, norm, unit
 from quatspline.keyframes import Keyframes
 from quatspline.options import AtMost, Count
 from quatspline.segments import SegmentCurve
@@ -83,24 +83,17 @@ class IncrementalSlerp(SegmentCurve):
         self._set_segments(segments, reach, knots)
 
 
-@inlined
-def _unit(p):
-    k = 1.0 / math.sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3])
-    return k * p[0], k * p[1], k * p[2], k * p[3]
-
-
 @fit_kernel
 def FIT(q, h, closed, sign, parameters, segments, report):
     """(1) from every keyframe; the arc of (2) from p_k is a segment."""
-    steps = int(parameters[0])
+    steps, reach = int(parameters[0]), 0.0
     for i in range(h.size):
         a = p = keyframe(q, i, sign)
-        x, y, z = step(q, i, i + 1, sign)
-        b = moved(a, x / steps, y / steps, z / steps)
-        k = 2.0 * math.cos(math.sqrt(x * x + y * y + z * z) / steps)
+        l = log(~p * keyframe(q, i + 1, sign))
+        b = a * exp((1.0 / steps) * l)
+        k = 2.0 * math.cos(norm(l) / steps)
         for j in range(i * steps, (i + 1) * steps):
-            r = _unit(b)
-            theta = set_arc(segments, j, 0, p[0], p[1], p[2], p[3], r[0], r[1], r[2], r[3])
-            report[REACH] = max(report[REACH], theta)
-            c = (k * b[0] - a[0], k * b[1] - a[1], k * b[2] - a[2], k * b[3] - a[3])
-            a, b, p = b, c, r
+            r = unit(b)
+            reach = max(reach, set_arc(segments[j], 0, p, r))
+            a, b, p = b, k * b - a, r
+    report[REACH] = reach

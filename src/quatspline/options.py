@@ -118,7 +118,7 @@ def _declared(fit: Callable[..., Any]) -> dict[str, inspect.Parameter]:
 
 
 def among(scheme: type[Curve], wanted: Mapping[str, Any]) -> dict[str, Any]:
-    """Those of the wanted options that a scheme declares."""
+    """Those of the wanted options that a scheme has."""
     known = declared_by(scheme)
     return {name: value for name, value in wanted.items() if name in known}
 

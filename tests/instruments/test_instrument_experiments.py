@@ -10,7 +10,6 @@ import pytest
 from quatspline.catalogue import load
 from quatspline.cli import running
 from quatspline.figures import style
-from quatspline.runs import running
 from quatspline.runs.experiment import Run, files
 from quatspline.runs.results import Results
 

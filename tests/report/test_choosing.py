@@ -13,7 +13,6 @@ from quatspline.cli import running
 from quatspline.figures import style
 from quatspline.findings import choosing
 from quatspline.findings.findings import findings, reader
-from quatspline.runs import running
 from quatspline.runs.experiment import Run, experiments, files
 from quatspline.runs.results import Results
 

@@ -21,6 +21,7 @@ from quatspline.kernels.jit import (
     REACH,
     RESULT,
     ROWS,
+    UNREPORTED,
     at_address,
     call_fit,
     call_sample,
@@ -79,14 +80,17 @@ def _describe(knots, segments, signs, closed, places):
 
 @compiled
 def fit_tracks(address, tracks, h, closed, signs, parameters, segments, report):
-    """Call a fit kernel on every track (K, n, 4); the largest reach that they report."""
+    """Call a fit kernel on every track (K, n, 4); the largest reach, UNREPORTED where one reports none."""
     reach = 0.0
     if not tracks.shape[0] == segments.shape[0] == report.shape[0] == signs.size:
         raise ValueError("tracks, segments, report and signs: one of each per track is expected")
     if segments.shape[1] % h.size or tracks.shape[1] + closed != h.size + 1:
         raise ValueError("spacings: one from each keyframe to the next is expected")
     for k in range(tracks.shape[0]):
+        report[k, REACH] = UNREPORTED
         call_fit(address, tracks[k], h, closed, signs[k], parameters, segments[k], report[k])
+        if report[k, REACH] == UNREPORTED:
+            return UNREPORTED
         reach = max(reach, report[k, REACH])
     return reach
 

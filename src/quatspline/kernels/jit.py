@@ -125,23 +125,13 @@ def _cached(function: Callable[..., Any], decorate: Callable[[], Any]) -> Any:
 
 
 def inlined(function: Callable[..., Any]) -> Any:
-    """Compile a scalar primitive that its callers always inline (so that loops vectorise)."""
-    return numba.njit(forceinline=True, **SETTINGS)(function)
+    """A function that compiled callers always inline, so that loops vectorise; Python runs it as it is."""
+    return extending.register_jitable(forceinline=True, **SETTINGS)(function)
 
 
 def compiled(function: Callable[..., Any]) -> Any:
     """Compile a function called from Python: cached on disk, free of the interpreter lock."""
     return _cached(function, lambda: numba.njit(cache=True, nogil=True, **SETTINGS)(function))
-
-
-@inlined
-def whole(n):
-    """n samples rounded up to whole vectors (of 8): a loop without a remainder.
-
-    The remainder of a long loop body may be contracted otherwise than its vectors, and a sample's last
-    digits would depend on its neighbours.  BLOCK is a multiple, so that the sheet has room.
-    """
-    return (n + 7) & -8
 
 
 class Kernel:
@@ -182,6 +172,9 @@ FIT_SIGNATURE = types.void(
 ITERATIONS, CHANGE, RESIDUAL, REACH = range(4)
 """Entries of a fit kernel's report; the last is the largest half angle that a sample can meet."""
 
+UNREPORTED = -1.0
+"""A reach that was not written: kernels for near angles must not be taken by an oversight."""
+
 
 def sample_kernel(function: Callable[..., Any]) -> Kernel:
     """A kernel ``f(sheet, n)`` that evaluates the first n samples of a block.
@@ -196,7 +189,7 @@ def fit_kernel(function: Callable[..., Any]) -> Kernel:
 
     q (n, 4) keyframes, h (segments,) spacings, sign the closing sign, parameters (p,) the
     scheme's options as numbers; fills segments (segments, constants) and report (4,),
-    whose entries are named above.
+    whose entries are named above.  Writing report[REACH] is a duty, whatever the family.
     """
     return Kernel(function, FIT_SIGNATURE)
 
