@@ -9,11 +9,11 @@ from collections.abc import Callable
 import numpy as np
 import pandas as pd
 import pytest
-from quatspline.runs.running import Run
 
 import quatspline as qs
 from quatspline import comparing
 from quatspline.catalogue import load, shipped
+from quatspline.runs.experiment import Run
 from quatspline.timing import own_keyframes
 from quatspline.timing.budget import OVER, Budget, Call, Job, calls, rungs, seconds, too_many
 from quatspline.timing.own_keyframes import left_out
