@@ -49,10 +49,11 @@ test: $(VENV)/test lint docs ## Lint, types, docs and all tests
 docs: $(VENV)/test ## Build docs into site/; broken links, citations and formulas fail
 	@$(BIN)/mkdocs build --quiet --strict
 
-lint: $(VENV)/test ## Lint, format check and type check
+lint: $(VENV)/test ## Lint, format check, type check, and imports against architecture.ini
 	@$(BIN)/ruff check --quiet .
 	@$(BIN)/ruff format --quiet --check .
 	@$(BIN)/mypy --no-error-summary
+	@$(BIN)/lint-imports --no-logo --no-cache architecture.ini
 
 format: $(VENV)/test ## Format the sources
 	@$(BIN)/ruff check --quiet --fix . ; $(BIN)/ruff format --quiet .

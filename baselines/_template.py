@@ -37,9 +37,8 @@ class Template(Curve):
 
     def _orientation(self, t: FloatArray) -> FloatArray:
         # t (m,) is time since the first keyframe, within the domain, one period if closed.
-        knots = self.keyframes.knots
-        i = np.clip(np.searchsorted(knots, t, side="right") - 1, 0, len(knots) - 2)
-        u = ((t - knots[i]) / self.keyframes.spacings[i])[:, None]
+        i, u = self.keyframes.locate(t)  # the segment, and 0 <= u <= 1 in it
+        u = u[:, None]
         if self.ease == "smooth":
             u = u * u * (3.0 - 2.0 * u)
         return normalise((1.0 - u) * self.q[i] + u * self.q[i + 1])  # (1)

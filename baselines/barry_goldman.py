@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from quatspline.families.arcs import SIZE as ARC
 from quatspline.families.arcs import set_arc
-from quatspline.families.nested import TRIANGLE, restored, set_parameter
-from quatspline.fitting.tangents import keyframe
-from quatspline.kernels.jit import REACH, fit_kernel
-from quatspline.kernels.scalars import slerp
+from quatspline.families.nested import TRIANGLE, set_parameter
+from quatspline.kernels.jit import REACH, fit_kernel, inlined
+from quatspline.kernels.operations import Operations, Per
+from quatspline.kernels.values import keyframe, restored, slerp
 from quatspline.keyframes import Keyframes
 from quatspline.segments import SegmentCurve
 
@@ -35,35 +35,35 @@ class BarryGoldman(SegmentCurve):
     support = 4
     constant_rate = "everywhere"
     family = TRIANGLE
-    operations = {"slerps per sample": 6, "logs per segment": 3}
+    operations = Operations(slerps=Per(sample=6), logs=Per(segment=3))
 
     def _fit(self, keyframes: Keyframes) -> None:
         self._solve(FIT)
 
 
+@inlined
+def _reflected(p, q):
+    """slerp(p, q; 2): what lies beyond an open end q."""
+    return restored(slerp(p, q, 2.0), p)
+
+
 @fit_kernel
 def FIT(q, h, closed, sign, parameters, segments, report):
     """The three arcs of (1), and the parameters of (1)-(4) as functions of u."""
-    n = h.size
+    n, reach = h.size, 0.0
     for i in range(n):
+        inside, ahead = i > 0 or closed, i < n - 1 or closed
         b, c = keyframe(q, i, sign), keyframe(q, i + 1, sign)
+        a = keyframe(q, i - 1, sign) if inside else _reflected(c, b)
+        d = keyframe(q, i + 2, sign) if ahead else _reflected(b, c)
         h1 = h[i]
-        h0, h2 = h[i - 1] if i > 0 or closed else h1, h[(i + 1) % n] if i < n - 1 or closed else h1
-        if i > 0 or closed:
-            a = keyframe(q, i - 1, sign)
-        else:
-            a = restored(slerp(c[0], c[1], c[2], c[3], b[0], b[1], b[2], b[3], 2.0), c)
-        if i < n - 1 or closed:
-            d = keyframe(q, i + 2, sign)
-        else:
-            d = restored(slerp(b[0], b[1], b[2], b[3], c[0], c[1], c[2], c[3], 2.0), b)
-        r0 = set_arc(segments, i, 0, a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3])
-        r1 = set_arc(segments, i, ARC, b[0], b[1], b[2], b[3], c[0], c[1], c[2], c[3])
-        r2 = set_arc(segments, i, 2 * ARC, c[0], c[1], c[2], c[3], d[0], d[1], d[2], d[3])
-        set_parameter(segments, i, 0, 1.0, h1 / h0)
-        set_parameter(segments, i, 1, 0.0, 1.0)
-        set_parameter(segments, i, 2, -h1 / h2, h1 / h2)
-        set_parameter(segments, i, 3, h0 / (h0 + h1), h1 / (h0 + h1))
-        set_parameter(segments, i, 4, 0.0, h1 / (h1 + h2))
-        set_parameter(segments, i, 5, 0.0, 1.0)
-        report[REACH] = max(report[REACH], r0, r1, r2)
+        h0, h2 = h[i - 1] if inside else h1, h[(i + 1) % n] if ahead else h1
+        s = segments[i]
+        reach = max(reach, set_arc(s, 0, a, b), set_arc(s, ARC, b, c), set_arc(s, 2 * ARC, c, d))
+        set_parameter(s, 0, 1.0, h1 / h0)
+        set_parameter(s, 1, 0.0, 1.0)
+        set_parameter(s, 2, -h1 / h2, h1 / h2)
+        set_parameter(s, 3, h0 / (h0 + h1), h1 / (h0 + h1))
+        set_parameter(s, 4, 0.0, h1 / (h1 + h2))
+        set_parameter(s, 5, 0.0, 1.0)
+    report[REACH] = reach

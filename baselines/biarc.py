@@ -6,10 +6,20 @@ import math
 
 import numpy as np
 
-from quatspline.families.circles import BIARC, SPLIT, combine, dot, set_circle, unit
-from quatspline.fitting.tangents import CHART, chart_velocities, keyframe, step
-from quatspline.kernels.jit import compiled, fit_kernel
-from quatspline.kernels.scalars import mul
+from quatspline.families.circles import BIARC, FIRST, SECOND, SPLIT, set_circle
+from quatspline.fitting.tangents import CHART, chart_velocities, step
+from quatspline.kernels.jit import REACH, compiled, fit_kernel
+from quatspline.kernels.operations import Operations, Per
+from quatspline.kernels.values import (
+    Vec,
+    keyframe,
+    norm,
+    pure,
+    put_quat,
+    quat_at,
+    unit,
+    vec_at,
+)
 from quatspline.keyframes import Keyframes
 from quatspline.segments import SegmentCurve
 
@@ -41,7 +51,7 @@ class Biarc(SegmentCurve):
     support = 4
     constant_rate = "everywhere"
     family = BIARC
-    operations = {"circle points per sample": 1, "logs per keyframe": 4}
+    operations = Operations(logs=Per(keyframe=4), others={"circle points": Per(sample=1)})
 
     def _fit(self, keyframes: Keyframes) -> None:
         self._solve(FIT)
@@ -50,14 +60,13 @@ class Biarc(SegmentCurve):
 @compiled
 def _direction(q, h, i, sign, closed, v):
     """The direction of v at keyframe i; where it vanishes that of the next step, or of the last."""
-    x, y, z = v[0], v[1], v[2]
     for way in (1, -1):
         if closed or 0 <= i + way < q.shape[0]:
-            a, b, c = step(q, i, i + way, sign)
-            rate = math.sqrt(a * a + b * b + c * c) / h[(i if way > 0 else i - 1) % h.size]
-            if rate > 0.0 and math.sqrt(x * x + y * y + z * z) <= STILL * rate:
-                x, y, z = way * a, way * b, way * c
-    return (x, y, z) if x * x + y * y + z * z > 0.0 else (1.0, 0.0, 0.0)
+            l = step(q, i, i + way, sign)
+            rate = norm(l) / h[(i if way > 0 else i - 1) % h.size]
+            if rate > 0.0 and norm(v) <= STILL * rate:
+                v = float(way) * l
+    return v if v @ v > 0.0 else Vec(1.0, 0.0, 0.0)
 
 
 @compiled
@@ -66,43 +75,40 @@ def _tangents(q, h, sign, closed):
     v = chart_velocities(q, h, closed, sign, 3, CHART)
     tangents = np.empty_like(q)
     for i in range(q.shape[0]):
-        x, y, z = _direction(q, h, i, sign, closed, v[i])
-        t = unit(mul(q[i, 0], q[i, 1], q[i, 2], q[i, 3], 0.0, x, y, z))
-        for k in range(4):
-            tangents[i, k] = t[k]
+        direction = _direction(q, h, i, sign, closed, vec_at(v[i], 0))
+        put_quat(tangents[i], 0, unit(quat_at(q[i], 0) * pure(direction)))
     return tangents
 
 
 @compiled
 def _joint(q0, t0, q1, t1):
     """(1) and (2)."""
-    gap, turn = combine(1.0, q1, -1.0, q0), combine(1.0, t1, -1.0, t0)
-    a, k, c = 0.5 * dot(turn, turn), dot(t0, q1) - dot(q0, t1), 0.5 * dot(gap, gap)
+    gap, turn = q1 - q0, t1 - t0
+    a, k, c = 0.5 * (turn @ turn), t0 @ q1 - q0 @ t1, 0.5 * (gap @ gap)
     root = math.sqrt(k * k + 4.0 * a * c)
     angle = math.atan2(2.0 * c, k + root) if k >= 0.0 else math.atan2(root - k, 2.0 * a)
-    cosine, sine = math.cos(angle), math.sin(angle)
-    total = combine(cosine, combine(1.0, q0, 1.0, q1), sine, combine(1.0, t0, -1.0, t1))
-    if dot(total, total) < STILL:  # parallel tangents across the step: halfway by symmetry
-        total = combine(1.0, q0, 1.0, q1)
+    total = math.cos(angle) * (q0 + q1) + math.sin(angle) * (t0 - t1)
+    if total @ total < STILL:  # parallel tangents across the step: halfway by symmetry
+        total = q0 + q1
     return unit(total)
 
 
 @compiled
 def _arc(p, tangent, end, shortest):
     """The arc from p to end: X, Y of `circles` (1), its angle and its length."""
-    chord = combine(1.0, end, -1.0, p)
-    ahead, size = dot(chord, tangent), dot(chord, chord)
+    chord = end - p
+    ahead, size = chord @ tangent, chord @ chord
     if size <= shortest * shortest:  # a point, not a full circle in a plane made of rounding
-        return tangent, combine(-1.0, p, 0.0, p), 0.0, 0.0
-    aside = combine(1.0, chord, -ahead, tangent)
-    aside = combine(1.0, aside, -dot(aside, tangent), tangent)  # twice is orthogonal to rounding
+        return tangent, -p, 0.0, 0.0
+    aside = chord - ahead * tangent
+    aside = aside - (aside @ tangent) * tangent  # twice is orthogonal to rounding
     # curvature vector c = 2 aside / |chord|^2; its part along p is -1 on the sphere, whatever rounding says
     k = 2.0 / size
-    c = combine(k, aside, -1.0 - k * dot(aside, p), p)
-    bend = math.sqrt(dot(c, c))
+    c = k * aside + (-1.0 - k * (aside @ p)) * p
+    bend = norm(c)
     r = 1.0 / bend
     angle = 2.0 * math.atan2(0.5 * size * bend, ahead)
-    return combine(r, tangent, 0.0, p), combine(r * r, c, 0.0, p), angle, r * angle
+    return r * tangent, (r * r) * c, angle, r * angle
 
 
 @fit_kernel
@@ -112,16 +118,14 @@ def FIT(q, h, closed, sign, parameters, segments, report):
     for i in range(h.size):
         q0, q1 = keyframe(q, i, sign), keyframe(q, i + 1, sign)
         t0, t1 = keyframe(tangents, i, sign), keyframe(tangents, i + 1, sign)
-        joint = _joint(q0, t0, q1, t1)
-        back = combine(-1.0, t1, 0.0, t1)
-        gap = combine(1.0, q1, -1.0, q0)
-        shortest = SHORT * math.sqrt(dot(gap, gap)) + STILL
+        joint, shortest = _joint(q0, t0, q1, t1), SHORT * norm(q1 - q0) + STILL
         x0, y0, angle0, length0 = _arc(q0, t0, joint, shortest)
-        x1, y1, angle1, length1 = _arc(q1, back, joint, shortest)
+        x1, y1, angle1, length1 = _arc(q1, -t1, joint, shortest)
         total = length0 + length1
         split = length0 / total if total > 0.0 else 0.5
         k0 = angle0 / split if split > 0.0 else 0.0
         k1 = angle1 / (1.0 - split) if split < 1.0 else 0.0
-        set_circle(segments, i, 0, q0, x0, y0, 0.0, k0, 0.0)
-        set_circle(segments, i, 1, q1, x1, y1, k1, -k1, 0.0)
+        set_circle(segments[i], FIRST, q0, x0, y0, (0.0, k0, 0.0))
+        set_circle(segments[i], SECOND, q1, x1, y1, (k1, -k1, 0.0))
         segments[i, SPLIT] = split
+    report[REACH] = 0.0

@@ -9,6 +9,7 @@ import numpy as np
 from quatspline.families.nested import TRIANGLE
 from quatspline.fitting.bezier import FIT
 from quatspline.fitting.tangents import CHART, SECANT
+from quatspline.kernels.operations import Operations, Per
 from quatspline.keyframes import Keyframes
 from quatspline.segments import SegmentCurve
 
@@ -41,7 +42,7 @@ class CatmullRom(SegmentCurve):
     support = 4
     constant_rate = "everywhere"
     family = TRIANGLE
-    operations = {"slerps per sample": 6, "logs per keyframe": 5, "exps per keyframe": 2}
+    operations = Operations(slerps=Per(sample=6), logs=Per(keyframe=5), exps=Per(keyframe=2))
 
     def _fit(self, keyframes: Keyframes, *, ends: Literal["chart", "secant"] = "chart") -> None:
         self._solve(FIT, np.array([SECANT if ends == "secant" else CHART]))

@@ -7,9 +7,10 @@ from typing import Literal
 
 import numpy as np
 
-from quatspline.families.circles import BLEND, SPLIT, combine, dot, set_circle, unit
-from quatspline.fitting.tangents import keyframe
-from quatspline.kernels.jit import compiled, fit_kernel, inlined
+from quatspline.families.circles import BLEND, FIRST, SECOND, SPLIT, set_circle
+from quatspline.kernels.jit import REACH, compiled, fit_kernel, inlined
+from quatspline.kernels.operations import Operations, Per
+from quatspline.kernels.values import keyframe, norm, unit
 from quatspline.keyframes import Keyframes
 from quatspline.segments import SegmentCurve
 
@@ -46,7 +47,7 @@ class CircularBlend(SegmentCurve):
     support = 4
     constant_rate = "everywhere"
     family = BLEND
-    operations = {"circle points per sample": 2, "slerps per sample": 1}
+    operations = Operations(slerps=Per(sample=1), others={"circle points": Per(sample=2)})
 
     def _fit(self, keyframes: Keyframes, *, blend: Literal["smooth", "linear"] = "smooth") -> None:
         self.continuity = 2 if blend == "smooth" else 1
@@ -56,8 +57,8 @@ class CircularBlend(SegmentCurve):
 @inlined
 def _chord(b, p):
     """p - b, its part along b that of the sphere, whatever rounding says."""
-    d = combine(1.0, p, -1.0, b)
-    return combine(1.0, d, -dot(d, b) - 0.5 * dot(d, d), b)
+    d = p - b
+    return d - (d @ b + 0.5 * (d @ d)) * b
 
 
 @compiled
@@ -68,63 +69,52 @@ def _circle(a, b, c):
     the centre is (l/2, k).  What is small is taken from the shortest of the three chords.
     """
     ba, bc = _chord(b, a), _chord(b, c)
-    ac = combine(1.0, bc, -1.0, ba)
-    if min(dot(ba, ba), dot(bc, bc), dot(ac, ac)) < SAME * SAME:
+    ac = bc - ba
+    if min(ba @ ba, bc @ bc, ac @ ac) < SAME * SAME:
         return _great(a, b, c)
-    onward = dot(bc, bc) > dot(ba, ba)  # c is the farther one
+    onward = bc @ bc > ba @ ba  # c is the farther one
     far, near = (bc, ba) if onward else (ba, bc)
-    back = combine(1.0, near, -1.0, far)
-    ahead, length = unit(far), math.sqrt(dot(far, far))
-    x = dot(near, ahead)
-    short = near if dot(near, near) < dot(back, back) else back
-    aside = combine(1.0, short, -dot(short, ahead), ahead)
-    aside = combine(1.0, aside, -dot(aside, ahead), ahead)
-    y = math.sqrt(dot(aside, aside))
+    back = near - far
+    ahead, length = unit(far), norm(far)
+    x = near @ ahead
+    short = near if near @ near < back @ back else back
+    aside = short - (short @ ahead) * ahead
+    aside = aside - (aside @ ahead) * ahead
+    y = norm(aside)
     if y == 0.0:
         return _great(a, b, c)
-    k = 0.5 * (x * dot(back, ahead) / y + y)
+    k = 0.5 * (x * (back @ ahead) / y + y)
     # X points to the side on which c comes before a; a chord p is seen at half the angle of its arc,
     # atan2(p . Y, p . X), from the centre, with p . Y = |p|^2 / 2
     e, f = (k, -0.5 * length) if onward else (-k, 0.5 * length)
     aside = unit(aside)
-    tangent, centre = combine(e, ahead, f, aside), combine(0.5 * length, ahead, k, aside)
-    square, along = 0.5 * length * length, length * e
-    square_near, along_near = 0.5 * (x * x + y * y), x * e + y * f
-    if onward:
-        return (
-            tangent,
-            centre,
-            -2.0 * math.atan2(square_near, -along_near),
-            2.0 * math.atan2(square, along),
-        )
-    return (
-        tangent,
-        centre,
-        -2.0 * math.atan2(square, -along),
-        2.0 * math.atan2(square_near, along_near),
-    )
+    tangent, centre = e * ahead + f * aside, (0.5 * length) * ahead + k * aside
+    distant = 0.5 * length * length, length * e
+    close = 0.5 * (x * x + y * y), x * e + y * f
+    of_a, of_c = (close, distant) if onward else (distant, close)
+    before, after = -2.0 * math.atan2(of_a[0], -of_a[1]), 2.0 * math.atan2(of_c[0], of_c[1])
+    return tangent, centre, before, after
 
 
 @compiled
 def _great(a, b, c):
     """The great circle through b and the farther of a and c, for triples that hold two points."""
-    ba, bc = combine(1.0, a, -1.0, b), combine(1.0, c, -1.0, b)
-    if max(dot(ba, ba), dot(bc, bc)) < SAME * SAME:  # a point
-        return combine(0.0, b, 0.0, b), combine(-1.0, b, 0.0, b), 0.0, 0.0
-    far = c if dot(bc, bc) >= dot(ba, ba) else a
-    x = unit(combine(1.0, far, -dot(far, b), b))
-    x = unit(combine(1.0, x, -dot(x, b), b))  # twice: b may be nearly its antipode
-    before, after = math.atan2(dot(a, x), dot(a, b)), math.atan2(dot(c, x), dot(c, b))
-    return x, combine(-1.0, b, 0.0, b), before, after
+    ba, bc = a - b, c - b
+    if max(ba @ ba, bc @ bc) < SAME * SAME:  # a point
+        return 0.0 * b, -b, 0.0, 0.0
+    far = c if bc @ bc >= ba @ ba else a
+    x = unit(far - (far @ b) * b)
+    x = unit(x - (x @ b) * b)  # twice: b may be nearly its antipode
+    return x, -b, math.atan2(a @ x, a @ b), math.atan2(c @ x, c @ b)
 
 
 @compiled
-def _set(segments, i, k, q, j, sign, closed, h):
-    """Circle k of segment i: the one through q_j and its neighbours, with its angle in u."""
+def _set(c, k, q, i, j, sign, closed, h):
+    """A circle of segment i at places k ...: the one through q_j and its neighbours, its angle in u."""
     b = keyframe(q, j, sign)
     if q.shape[0] == 2 and not closed:
         x, y, _, after = _great(b, b, keyframe(q, j + 1, sign))
-        set_circle(segments, i, k, b, x, y, 0.0, after, 0.0)
+        set_circle(c, k, b, x, y, (0.0, after, 0.0))
         return
     x, y, before, after = _circle(keyframe(q, j - 1, sign), b, keyframe(q, j + 1, sign))
     # the quadratic in t through (-h_0, before), (0, 0), (h_1, after) bends by r = (slopes' step) / time
@@ -133,9 +123,9 @@ def _set(segments, i, k, q, j, sign, closed, h):
     r = (after / h1 + before / h0) / (h0 + h1)
     bend = -r * own * own
     if i == j:  # the segment begins at t_j, or at t_{j-1}
-        set_circle(segments, i, k, b, x, y, 0.0, after, bend)
+        set_circle(c, k, b, x, y, (0.0, after, bend))
     else:
-        set_circle(segments, i, k, b, x, y, before, -before, bend)
+        set_circle(c, k, b, x, y, (before, -before, bend))
 
 
 @fit_kernel
@@ -147,7 +137,8 @@ def FIT(q, h, closed, sign, parameters, segments, report):
         second = i + 1 if closed else min(i + 1, n - 2)
         if n == 2 and not closed:
             first = second = 0
-        _set(segments, i, 0, q, min(first, second), sign, closed, h)
-        _set(segments, i, 1, q, max(first, second), sign, closed, h)
-        for c in range(3):
-            segments[i, SPLIT + c] = parameters[c]
+        _set(segments[i], FIRST, q, i, min(first, second), sign, closed, h)
+        _set(segments[i], SECOND, q, i, max(first, second), sign, closed, h)
+        for k in range(3):
+            segments[i, SPLIT + k] = parameters[k]
+    report[REACH] = 0.0

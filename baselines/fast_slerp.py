@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import Annotated
 
@@ -9,12 +10,29 @@ import numpy as np
 from numba import carray
 
 from quatspline.families.chords import SIZE as CHORD
-from quatspline.families.chords import VERSINE, set_acceleration, set_chord, set_point, set_velocity
-from quatspline.fitting.tangents import keyframe
-from quatspline.kernels.jit import BLOCK, CONSTANTS, REACH, ROWS, fit_kernel, inlined, sample_kernel
+from quatspline.families.chords import (
+    VERSINE,
+    set_chord,
+    weighted_acceleration,
+    weighted_point,
+    weighted_velocity,
+)
+from quatspline.kernels.family import Family
+from quatspline.kernels.jit import (
+    BLOCK,
+    CONSTANTS,
+    REACH,
+    RESULT,
+    ROWS,
+    fit_kernel,
+    inlined,
+    sample_kernel,
+)
+from quatspline.kernels.operations import Operations, Per
+from quatspline.kernels.values import keyframe, put_quat, put_vec
 from quatspline.keyframes import Keyframes
 from quatspline.options import AtMost, Count
-from quatspline.segments import Family, SegmentCurve
+from quatspline.segments import SegmentCurve
 
 # notation: y = 1 - cos(theta); constants of a segment: its chord, then the number of terms and the
 # correction of the last term.  Rows behind them hold f and its u-derivatives for both weights.
@@ -59,7 +77,8 @@ def ORIENTATION(sheet, n):
     s = carray(sheet, (ROWS, BLOCK))
     _nest(s, n, 0)
     for j in range(n):
-        set_point(s, j, (1.0 - s[0, j]) * s[_F, j], s[0, j] * s[_G, j])
+        u, f, g = s[0, j], s[_F, j], s[_G, j]
+        put_quat(s[RESULT:, j], 0, weighted_point(s[CONSTANTS:, j], (1.0 - u) * f, u * g))
 
 
 @sample_kernel
@@ -69,8 +88,9 @@ def VELOCITY(sheet, n):
     _nest(s, n, 1)
     for j in range(n):
         u, f, f1, g, g1 = s[0, j], s[_F, j], s[_F + 1, j], s[_G, j], s[_G + 1, j]
-        v = 1.0 - u
-        set_velocity(s, j, v * f, v * f1 - f, u * g, u * g1 + g)
+        v, rate = 1.0 - u, 2.0 * s[1, j]
+        rates = weighted_velocity(s[CONSTANTS:, j], v * f, v * f1 - f, u * g, u * g1 + g)
+        put_vec(s[RESULT:, j], 0, rate * rates)
 
 
 @sample_kernel
@@ -81,20 +101,20 @@ def ACCELERATION(sheet, n):
     for j in range(n):
         u, f, f1, f2 = s[0, j], s[_F, j], s[_F + 1, j], s[_F + 2, j]
         g, g1, g2 = s[_G, j], s[_G + 1, j], s[_G + 2, j]
-        v = 1.0 - u
-        set_acceleration(
-            s, j, v * f, v * f1 - f, v * f2 - 2.0 * f1, u * g, u * g1 + g, u * g2 + 2.0 * g1
-        )
+        v, rate = 1.0 - u, 2.0 * s[1, j] * s[1, j]
+        a, b = (v * f, v * f1 - f, v * f2 - 2.0 * f1), (u * g, u * g1 + g, u * g2 + 2.0 * g1)
+        put_vec(s[RESULT:, j], 0, rate * weighted_acceleration(s[CONSTANTS:, j], *a, *b))
 
 
 @fit_kernel
 def FIT(q, h, closed, sign, parameters, segments, report):
     """The chord from each keyframe to the next; parameters: terms, correction of the last."""
+    reach = 0.0
     for i in range(h.size):
-        theta = set_chord(segments, i, keyframe(q, i, sign), keyframe(q, i + 1, sign))
-        segments[i, TERMS] = parameters[0]
-        segments[i, LAST] = parameters[1]
-        report[REACH] = max(report[REACH], theta)
+        c = segments[i]
+        reach = max(reach, set_chord(c, keyframe(q, i, sign), keyframe(q, i + 1, sign)))
+        c[TERMS], c[LAST] = parameters[0], parameters[1]
+    report[REACH] = reach
 
 
 @cache
@@ -151,16 +171,16 @@ class FastSlerp(SegmentCurve):
     support = 2
     constant_rate = "no"
     family = Family(SIZE, near=_KERNELS, far=_KERNELS)
-    operations = {
-        "polynomial terms per sample": 16,
-        "square roots per sample": 1,
-        "logs per segment": 1,
-    }
+    operations = Operations(
+        roots=Per(sample=1), logs=Per(segment=1), others={"polynomial terms": Per(sample=16)}
+    )
 
     angle_error: float
     """The largest angle from slerp over all steps up to half a turn, measured, in rad."""
 
     def _fit(self, keyframes: Keyframes, *, terms: Annotated[Count, AtMost(1000)] = 8) -> None:
-        self.operations = {**type(self).operations, "polynomial terms per sample": 2 * terms}
+        self.operations = replace(
+            self.operations, others={"polynomial terms": Per(sample=2 * terms)}
+        )
         last, self.angle_error = _balanced(terms)
         self._solve(FIT, np.array([terms, last]))

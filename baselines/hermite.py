@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
 
-from quatspline.families.cumulative import UNBOUNDED, set_base, set_factor
-from quatspline.fitting.tangents import CHART, SECANT, chart_velocities, keyframe
+from quatspline.families.cumulative import CUMULATIVE, set_base, set_factor
+from quatspline.fitting.tangents import CHART, SECANT, chart_velocities
 from quatspline.kernels.jit import REACH, fit_kernel
-from quatspline.kernels.scalars import between, exp, log, mul
+from quatspline.kernels.operations import Operations, Per
+from quatspline.kernels.values import exp, keyframe, log, vec_at
 from quatspline.keyframes import Keyframes
 from quatspline.segments import SegmentCurve
+
+B1 = (0.0, 3.0, -3.0, 1.0, 0.0, 0.0)
+B2 = (0.0, 0.0, 3.0, -2.0, 0.0, 0.0)
+B3 = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0)
+"""(2), coefficients from u^0 to u^5."""
 
 
 class Hermite(SegmentCurve):
@@ -42,8 +49,8 @@ class Hermite(SegmentCurve):
     order = 3
     support = 4
     constant_rate = "everywhere"
-    family = UNBOUNDED
-    operations = {"exps per sample": 3, "logs per keyframe": 5, "exps per keyframe": 2}
+    family = CUMULATIVE
+    operations = Operations(exps=Per(sample=3, keyframe=2), logs=Per(keyframe=5))
 
     def _fit(
         self,
@@ -54,29 +61,21 @@ class Hermite(SegmentCurve):
     ) -> None:
         if window == 5:
             self.support = 6
-            self.operations = {**type(self).operations, "logs per keyframe": 9}
+            self.operations = replace(self.operations, logs=Per(keyframe=9))
         self._solve(FIT, np.array([window, SECANT if ends == "secant" else CHART]))
 
 
 @fit_kernel
 def FIT(q, h, closed, sign, parameters, segments, report):
-    """The factors of (1) in powers of u; parameters: window, ends."""
+    """The factors of (1); parameters: window, ends."""
     v = chart_velocities(q, h, closed, sign, int(parameters[0]), parameters[1])
-    n = q.shape[0]
+    reach = 0.0
     for i in range(h.size):
-        a, b = keyframe(q, i, sign), keyframe(q, i + 1, sign)
-        j, k = (i + 1) % n, h[i] / 3.0
-        x, y, z = k * v[i, 0], k * v[i, 1], k * v[i, 2]
-        set_base(segments, i, a[0], a[1], a[2], a[3])
-        r1 = set_factor(segments, i, 0, x, y, z, 0.0, 3.0, -3.0, 1.0, 0.0, 0.0)
-        # (3), from the left: q_i exp(w_1), and the rest
-        w, ex, ey, ez = exp(x, y, z)
-        a = mul(a[0], a[1], a[2], a[3], w, ex, ey, ez)
-        c = between(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3])
-        x, y, z = k * v[j, 0], k * v[j, 1], k * v[j, 2]
-        r3 = set_factor(segments, i, 2, x, y, z, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0)
-        w, ex, ey, ez = exp(-x, -y, -z)
-        c = mul(c[0], c[1], c[2], c[3], w, ex, ey, ez)
-        x, y, z = log(c[0], c[1], c[2], c[3])
-        r2 = set_factor(segments, i, 1, x, y, z, 0.0, 0.0, 3.0, -2.0, 0.0, 0.0)
-        report[REACH] = max(report[REACH], r1, r2, r3)
+        p, r, c = keyframe(q, i, sign), keyframe(q, i + 1, sign), segments[i]
+        w1 = (h[i] / 3.0) * vec_at(v[i], 0)
+        w3 = (h[i] / 3.0) * vec_at(v[(i + 1) % q.shape[0]], 0)
+        w2 = log(~(p * exp(w1)) * r * exp(-w3))  # (3)
+        set_base(c, p)
+        r1, r2, r3 = set_factor(c, 0, w1, B1), set_factor(c, 1, w2, B2), set_factor(c, 2, w3, B3)
+        reach = max(reach, r1, r2, r3)
+    report[REACH] = reach

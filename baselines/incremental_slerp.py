@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
 
 from quatspline.families.arcs import ARC, SIZE, set_arc
-from quatspline.fitting.tangents import keyframe, moved, step
 from quatspline.kernels.driver import fit_tracks
-from quatspline.kernels.jit import REACH, fit_kernel, inlined
+from quatspline.kernels.jit import REACH, fit_kernel
+from quatspline.kernels.operations import Operations, Per
+from quatspline.kernels.values import exp, keyframe, log, norm, unit
 from quatspline.keyframes import Keyframes
 from quatspline.options import AtMost, Count
 from quatspline.segments import SegmentCurve
@@ -51,10 +53,10 @@ class IncrementalSlerp(SegmentCurve):
     constant_rate = "everywhere"
     practical_keyframes = 100_000
     family = ARC
-    operations = {"slerps per sample": 1, "logs per segment": 65}
+    operations = Operations(slerps=Per(sample=1), logs=Per(segment=65))
 
     def _fit(self, keyframes: Keyframes, *, steps: Annotated[Count, AtMost(4096)] = 64) -> None:
-        self.operations = {**type(self).operations, "logs per segment": steps + 1}
+        self.operations = replace(self.operations, logs=Per(segment=steps + 1))
         self.fit_kernel, self.parameters = FIT, np.array([float(steps)])
         h, tracks = keyframes.spacings, keyframes.tracks
         points = tracks.shape[0] * h.size * steps
@@ -75,31 +77,23 @@ class IncrementalSlerp(SegmentCurve):
             report,
         )
         # Every step is a segment of its own.
-        knots = keyframes.knots[:-1, None] + h[:, None] / steps * np.arange(steps)
-        knots = np.append(knots, keyframes.knots[-1])
+        knots = np.append(keyframes.inside(np.arange(steps) / steps), keyframes.knots[-1])
         if (np.diff(knots) <= 0.0).any():
             raise ValueError(f"steps={steps}: float64 does not tell so many within a spacing apart")
         self._set_segments(segments, reach, knots)
 
 
-@inlined
-def _unit(p):
-    k = 1.0 / math.sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3])
-    return k * p[0], k * p[1], k * p[2], k * p[3]
-
-
 @fit_kernel
 def FIT(q, h, closed, sign, parameters, segments, report):
     """(1) from every keyframe; the arc of (2) from p_k is a segment."""
-    steps = int(parameters[0])
+    steps, reach = int(parameters[0]), 0.0
     for i in range(h.size):
         a = p = keyframe(q, i, sign)
-        x, y, z = step(q, i, i + 1, sign)
-        b = moved(a, x / steps, y / steps, z / steps)
-        k = 2.0 * math.cos(math.sqrt(x * x + y * y + z * z) / steps)
+        l = log(~p * keyframe(q, i + 1, sign))
+        b = a * exp((1.0 / steps) * l)
+        k = 2.0 * math.cos(norm(l) / steps)
         for j in range(i * steps, (i + 1) * steps):
-            r = _unit(b)
-            theta = set_arc(segments, j, 0, p[0], p[1], p[2], p[3], r[0], r[1], r[2], r[3])
-            report[REACH] = max(report[REACH], theta)
-            c = (k * b[0] - a[0], k * b[1] - a[1], k * b[2] - a[2], k * b[3] - a[3])
-            a, b, p = b, c, r
+            r = unit(b)
+            reach = max(reach, set_arc(segments[j], 0, p, r))
+            a, b, p = b, k * b - a, r
+    report[REACH] = reach

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from quatspline.keyframes import Keyframes
-from quatspline.peers.wrapping import InterpolatePyCurve
+from quatspline.peers.interpolatepy import InterpolatePyCurve
 
 
 class InterpolatePyQuaternionSpline(InterpolatePyCurve):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from quatspline.keyframes import Keyframes
-from quatspline.peers.wrapping import InterpolatePyCurve
+from quatspline.peers.interpolatepy import InterpolatePyCurve
 
 
 class InterpolatePySquadC2(InterpolatePyCurve):

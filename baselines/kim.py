@@ -24,23 +24,27 @@ import numpy as np
 
 from quatspline.families.cumulative import CUMULATIVE
 from quatspline.fitting.bspline import (
-    control,
     end_velocity,
-    increment,
     increments,
-    keyframe,
     knot_weights,
-    set_control,
     set_phantoms,
-    small_log,
-    squared,
-    turned,
     write_segments,
 )
 from quatspline.fitting.bspline_newton import copy, descend, moved, newton, settle
 from quatspline.inputs.arrays import at, real_array, refuse_infinite
 from quatspline.kernels.jit import CHANGE, ITERATIONS, REACH, RESIDUAL, compiled, fit_kernel
-from quatspline.kernels.scalars import between, mul
+from quatspline.kernels.operations import Operations, Per
+from quatspline.kernels.values import (
+    exp,
+    keyframe,
+    log,
+    put_quat_column,
+    put_vec_column,
+    quat_at,
+    quat_column,
+    vec_at,
+    vec_column,
+)
 from quatspline.keyframes import Keyframes
 from quatspline.options import LARGEST, Count, OnFailure, Positive, Stop
 from quatspline.quaternion import FloatArray
@@ -67,16 +71,15 @@ def relax(problem, w, d, tolerance, by_change, limit):
         set_phantoms(w, cyclic, clamped)
         worst = 0.0
         for i in range(0 if cyclic else 1, n):
-            turn = mul(*turned(-m[i], increment(w, i)), *turned(p[i], increment(w, i + 1)))
-            r = small_log(*between(*mul(*control(d, i), *turn), *control(targets, i)))
-            worst = max(worst, squared(r))
-            turn = turned(1.0 / (1.0 - m[i] - p[i]), r)
-            set_control(fresh, i, *mul(*control(d, i), *turn))
+            k = exp(-m[i] * vec_column(w, i)) * exp(p[i] * vec_column(w, i + 1))
+            r = log(~(quat_column(d, i) * k) * quat_column(targets, i))
+            worst = max(worst, r @ r)
+            step = exp((1.0 / (1.0 - m[i] - p[i])) * r)
+            put_quat_column(fresh, i, quat_column(d, i) * step)
         if not by_change and 2.0 * math.sqrt(worst) <= tolerance:
             break
         if cyclic:
-            for c in range(4):
-                fresh[c, n] = sign * fresh[c, 0]
+            put_quat_column(fresh, n, sign * quat_column(fresh, 0))
         updates, change = updates + 1, moved(fresh, d, n if cyclic else n + 1)
         copy(fresh, d, 1.0)
         increments(d, w)
@@ -95,15 +98,13 @@ def pose(q, h, sign, clamped, w):
     n, closed = h.size, sign != 0.0
     targets, m, p = np.empty((4, n + 1)), np.empty(n + 1), np.empty(n + 1)
     knot_weights(h, closed, clamped, m, p)
-    for i in range(q.shape[0]):
-        set_control(targets, i, *keyframe(q, i))
-    if closed:
-        set_control(targets, n, sign * q[0, 0], sign * q[0, 1], sign * q[0, 2], sign * q[0, 3])
-    else:
+    for i in range(n + 1):
+        put_quat_column(targets, i, keyframe(q, i, sign))
+    if not closed:
         m[0] = p[0] = m[n] = p[n] = 0.0
     if clamped:
-        set_control(targets, 0, *mul(*keyframe(q, 0), *turned(1.0, increment(w, 0))))
-        set_control(targets, n, *mul(*keyframe(q, n), *turned(-1.0, increment(w, n + 1))))
+        put_quat_column(targets, 0, quat_at(q[0], 0) * exp(vec_column(w, 0)))
+        put_quat_column(targets, n, quat_at(q[n], 0) * exp(-vec_column(w, n + 1)))
     return targets, m, p, sign, clamped
 
 
@@ -112,12 +113,10 @@ def set_ends(q, h, parameters, w):
     """Increments h v / 3 to a clamped curve's outer controls, v being half the given angular
     velocities or the chart's estimates."""
     for side in range(2):
-        k = VELOCITIES + 3 * side
-        v = (0.5 * parameters[k], 0.5 * parameters[k + 1], 0.5 * parameters[k + 2])
+        v = 0.5 * vec_at(parameters, VELOCITIES + 3 * side)
         if parameters[HAS_START + side] == 0.0:
             v = end_velocity(q, h, side == 1)
-        j, third = side * (h.size + 1), h[side * (h.size - 1)] / 3.0
-        w[0, j], w[1, j], w[2, j] = third * v[0], third * v[1], third * v[2]
+        put_vec_column(w, side * (h.size + 1), (h[side * (h.size - 1)] / 3.0) * v)
 
 
 @fit_kernel
@@ -180,15 +179,11 @@ class Kim(SegmentCurve):
     iterative = True
     measures_itself = True
     family = CUMULATIVE
-    operations = {
-        "exps per sample": 3,
-        "exps per knot and iteration": 3,
-        "logs per segment and iteration": 1,
-        "exps per knot": 3,
-        "exps per segment": 4,
-        "logs per segment": 3,
-        "exps per solve": 3,
-    }
+    operations = Operations(
+        exps=Per(sample=3, knot=3, segment=4, solve=3),
+        logs=Per(segment=3),
+        iteration=Operations(exps=Per(knot=3), logs=Per(segment=1)),
+    )
 
     def _fit(
         self,

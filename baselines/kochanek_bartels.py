@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from quatspline.families.nested import TRIANGLE
 from quatspline.fitting.bezier import FIT
 from quatspline.fitting.tangents import CHART, SECANT
+from quatspline.kernels.operations import Operations, Per
 from quatspline.keyframes import Keyframes
 from quatspline.options import per_keyframe
 from quatspline.quaternion import FloatArray
@@ -48,7 +49,7 @@ class KochanekBartels(SegmentCurve):
     support = 4
     constant_rate: Literal["everywhere", "no"] = "everywhere"
     family = TRIANGLE
-    operations = {"slerps per sample": 6, "logs per keyframe": 5, "exps per keyframe": 2}
+    operations = Operations(slerps=Per(sample=6), logs=Per(keyframe=5), exps=Per(keyframe=2))
 
     def _fit(
         self,

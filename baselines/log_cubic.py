@@ -9,6 +9,7 @@ from scipy.interpolate import CubicSpline
 
 from quatspline import quaternion
 from quatspline.families.rotation_vector import PHI, Q0, ROTATION_VECTOR
+from quatspline.kernels.operations import Operations, Per
 from quatspline.keyframes import Keyframes
 from quatspline.quaternion import FloatArray
 from quatspline.segments import SegmentCurve
@@ -42,7 +43,7 @@ class LogCubicSpline(SegmentCurve):
     constant_rate = "no"
     closable = False
     family = ROTATION_VECTOR
-    operations = {"exps per sample": 1, "logs per keyframe": 1}
+    operations = Operations(exps=Per(sample=1), logs=Per(keyframe=1))
 
     def _fit(
         self,

@@ -9,6 +9,7 @@ import numpy as np
 from quatspline.families.rotation_vector import ROTATION_VECTOR
 from quatspline.fitting.least_torque import minimise
 from quatspline.kernels.jit import REACH
+from quatspline.kernels.operations import Operations, Per
 from quatspline.keyframes import Keyframes
 from quatspline.options import AtMost, Count, OnFailure, Positive
 from quatspline.proposed.local_quintic import LocalQuinticSpline
@@ -56,7 +57,7 @@ class MinimumTorqueSpline(SegmentCurve):
     iterative = True
     practical_keyframes = 200
     family = ROTATION_VECTOR
-    operations = {"exps per sample": 1}
+    operations = Operations(exps=Per(sample=1))
 
     def _fit(
         self,
@@ -69,8 +70,7 @@ class MinimumTorqueSpline(SegmentCurve):
     ) -> None:
         m, tracks = subintervals, keyframes.tracks
         h = np.repeat(keyframes.spacings / m, m)
-        inner = keyframes.knots[:-1, None] + np.arange(m) * h[::m, None]
-        knots = np.append(inner, keyframes.knots[-1])
+        knots = np.append(keyframes.inside(np.arange(m) / m), keyframes.knots[-1])
         start = LocalQuinticSpline.from_keyframes(keyframes)
         nodes, v, a = (np.moveaxis(start.inner(knots, k), 1, 0).copy() for k in (0, 1, 2))
         nodes[:, ::m] = tracks

@@ -26,30 +26,32 @@ from contextlib import suppress
 from typing import Any, Literal
 
 import numpy as np
-from numba import carray
 
 from quatspline import quaternion
-from quatspline.kernels.jit import (
-    BLOCK,
-    CONSTANTS,
-    RESULT,
-    ROWS,
-    Kernel,
-    compiled,
-    inlined,
-    sample_kernel,
+from quatspline.kernels.family import Family, family
+from quatspline.kernels.jit import compiled, inlined
+from quatspline.kernels.operations import Operations, Per
+from quatspline.kernels.values import (
+    Mat,
+    Quat,
+    Vec,
+    cross,
+    quat_at,
+    rotate,
+    solve_symmetric,
+    transposed,
+    unit,
+    vec_at,
 )
-from quatspline.kernels.scalars import cross, mul
 from quatspline.keyframes import Keyframes
 from quatspline.quaternion import FloatArray
-from quatspline.segments import Family, SegmentCurve
+from quatspline.segments import SegmentCurve
 from quatspline.system.quiet import quiet
 
 # notation: the constants of a segment are a base quaternion (4), the middle of its arc, then those of
-# B seen from there (`_entry`), nine for each of f, r, g_0 ..., column by column: B[row, j] is entry
+# B seen from there (`frame`), nine for each of f, r, g_0 ..., column by column: B[row, j] is entry
 # 3 j + row.
 COEFFICIENTS = 4
-_B = CONSTANTS + COEFFICIENTS
 
 LIMIT = 60
 """Steps of the iteration: Newton takes 3 to 8, bisection beside a pole the rest."""
@@ -57,49 +59,25 @@ CLOSE = 1e-14
 """A step of g (about 3) that moves the orientation by rounding only."""
 
 
-@inlined
-def _dot(a, b):
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-@inlined
-def _symmetric_solve(a00, a01, a02, a11, a12, a22, x, y, z):
-    """Solution of a symmetric 3x3 system by cofactors, its determinant and whether it is definite."""
-    c00, c01, c02 = a11 * a22 - a12 * a12, a02 * a12 - a01 * a22, a01 * a12 - a02 * a11
-    c11, c12, c22 = a00 * a22 - a02 * a02, a01 * a02 - a00 * a12, a00 * a11 - a01 * a01
-    det = a00 * c00 + a01 * c01 + a02 * c02
-    k = 1.0 / det if det != 0.0 else 0.0
-    return (
-        k * (c00 * x + c01 * y + c02 * z),
-        k * (c01 * x + c11 * y + c12 * z),
-        k * (c02 * x + c12 * y + c22 * z),
-        a00 > 0.0 and c22 > 0.0 and det > 0.0,
-    )
-
-
 @compiled
-def nearest(a, b, c):
-    """(2) for the matrix with columns a, b, c: the Cayley parameters d of the nearest rotation.
+def nearest(b):
+    """(2): the unit quaternion of the rotation nearest to a matrix.
 
     Newton's iteration from g = 3, kept between a point below the root and the bound
     g <= sqrt(3) |B|; what leaves that bracket, or makes A indefinite, is bisected.
     """
-    tau = a[0] + b[1] + c[2]
-    x, y, z = b[2] - c[1], c[0] - a[2], a[1] - b[0]
-    s01, s02, s12 = a[1] + b[0], a[2] + c[0], b[2] + c[1]
-    high = math.sqrt(3.0 * (_dot(a, a) + _dot(b, b) + _dot(c, c)))
+    tau, z = trace(b), vee(b)
+    both = b + transposed(b)
+    high = math.sqrt(3.0 * (b.a @ b.a + b.b @ b.b + b.c @ b.c))
     low = -high
     g = min(3.0, high)
-    d = (0.0, 0.0, 0.0)
+    d = Vec(0.0, 0.0, 0.0)
     for _ in range(LIMIT):
-        k = tau + g
-        dx, dy, dz, definite = _symmetric_solve(
-            k - 2.0 * a[0], -s01, -s02, k - 2.0 * b[1], -s12, k - 2.0 * c[2], x, y, z
-        )
+        x, definite = solve_symmetric(scalar(tau + g) - both, z)
         step = 0.0
         if definite:
-            d = (dx, dy, dz)
-            step = -(g - tau - (x * dx + y * dy + z * dz)) / (1.0 + _dot(d, d))
+            d = x
+            step = -(g - tau - z @ d) / (1.0 + d @ d)
             if abs(step) < CLOSE:
                 break
         if definite and step < 0.0:
@@ -107,157 +85,92 @@ def nearest(a, b, c):
         else:
             low = g
         g = g + step if definite and low < g + step < high else 0.5 * (low + high)
-    return d
+    return unit(Quat(1.0, d.x, d.y, d.z))
 
 
 @inlined
-def _unit(d):
-    k = 1.0 / math.sqrt(1.0 + _dot(d, d))
-    return k, k * d[0], k * d[1], k * d[2]
+def trace(m):
+    """The trace."""
+    return m.a.x + m.b.y + m.c.z
 
 
 @inlined
-def _columns(w, x, y, z):
-    """The columns of the rotation matrix of a unit quaternion."""
-    return (
-        (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)),
-        (2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)),
-        (2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)),
-    )
+def vee(m):
+    """(M_32 - M_23, M_13 - M_31, M_21 - M_12)."""
+    return Vec(m.b.z - m.c.y, m.c.x - m.a.z, m.a.y - m.b.x)
 
 
 @inlined
-def _seen(f, v):
-    """C^T v for C with columns f."""
-    return _dot(f[0], v), _dot(f[1], v), _dot(f[2], v)
+def scalar(f):
+    """f I."""
+    return Mat(Vec(f, 0.0, 0.0), Vec(0.0, f, 0.0), Vec(0.0, 0.0, f))
 
 
 @inlined
-def _vee(a, b, c):
-    """vee of the matrix with columns a, b, c."""
-    return b[2] - c[1], c[0] - a[2], a[1] - b[0]
+def _seen(q, m):
+    """C^T M, C the rotation of a unit quaternion."""
+    return Mat(rotate(~q, m.a), rotate(~q, m.b), rotate(~q, m.c))
 
 
 @inlined
 def _rate(p, v):
-    """M^-1 v with M = tr(P) I - P, P with columns p; zero where no rotation is nearest alone."""
-    p0, p1, p2 = p
-    x, y, z, _ = _symmetric_solve(
-        p1[1] + p2[2], -p0[1], -p0[2], p0[0] + p2[2], -p1[2], p0[0] + p1[1], v[0], v[1], v[2]
-    )
-    return x, y, z
+    """M^-1 v of (3); zero where no rotation is nearest alone."""
+    x, _ = solve_symmetric(scalar(trace(p)) - p, v)
+    return x
 
 
 @inlined
-def _entry(s, p, j, u, quintic, m):
-    """Derivative m of an entry of B at u: f + r u + u (1 - u) g(u), exact at both ends."""
-    a, b = s[p + 18, j], s[p + 27, j]
-    c, d = (s[p + 36, j], s[p + 45, j]) if quintic else (0.0, 0.0)
-    g, w = ((d * u + c) * u + b) * u + a, u - u * u
-    if m == 0:
-        return w * g + (s[p + 9, j] * u + s[p, j])
-    g1, w1 = (3.0 * d * u + 2.0 * c) * u + b, 1.0 - 2.0 * u
-    if m == 1:
-        return w * g1 + (w1 * g + s[p + 9, j])
-    return w * (6.0 * d * u + 2.0 * c) + 2.0 * (w1 * g1 - g)
-
-
-@inlined
-def _frame(s, j, quintic, m):
-    """The columns of derivative m of B at a sample's u."""
-    u, p = s[0, j], _B
-    return (
-        (
-            _entry(s, p, j, u, quintic, m),
-            _entry(s, p + 1, j, u, quintic, m),
-            _entry(s, p + 2, j, u, quintic, m),
-        ),
-        (
-            _entry(s, p + 3, j, u, quintic, m),
-            _entry(s, p + 4, j, u, quintic, m),
-            _entry(s, p + 5, j, u, quintic, m),
-        ),
-        (
-            _entry(s, p + 6, j, u, quintic, m),
-            _entry(s, p + 7, j, u, quintic, m),
-            _entry(s, p + 8, j, u, quintic, m),
-        ),
-    )
-
-
-def _kernel(degree: int, order: int) -> Kernel:
-    """The sample kernel of an order for splines of a degree.
-
-    Closures hold plain values only: numba's cache does not recognise one that holds functions.
-    """
-    quintic = degree == 5
-
-    def orientation(sheet, n):
-        s = carray(sheet, (ROWS, BLOCK))
-        for j in range(n):
-            b = _frame(s, j, quintic, 0)
-            w, x, y, z = _unit(nearest(b[0], b[1], b[2]))
-            c = CONSTANTS
-            w, x, y, z = mul(s[c, j], s[c + 1, j], s[c + 2, j], s[c + 3, j], w, x, y, z)
-            s[RESULT, j] = w
-            s[RESULT + 1, j] = x
-            s[RESULT + 2, j] = y
-            s[RESULT + 3, j] = z
-
-    def rates(sheet, n):
-        s = carray(sheet, (ROWS, BLOCK))
-        for j in range(n):
-            b, b1 = _frame(s, j, quintic, 0), _frame(s, j, quintic, 1)
-            w, x, y, z = _unit(nearest(b[0], b[1], b[2]))
-            f = _columns(w, x, y, z)
-            p = (_seen(f, b[0]), _seen(f, b[1]), _seen(f, b[2]))
-            q = (_seen(f, b1[0]), _seen(f, b1[1]), _seen(f, b1[2]))
-            v = _rate(p, _vee(q[0], q[1], q[2]))
-            k = s[1, j]
-            if order == 2:
-                b2 = _frame(s, j, quintic, 2)
-                t0, t1, t2 = _seen(f, b2[0]), _seen(f, b2[1]), _seen(f, b2[2])
-                o0, o1, o2 = _turned(v, q[0], t0), _turned(v, q[1], t1), _turned(v, q[2], t2)
-                trace = q[0][0] + q[1][1] + q[2][2]
-                pv, qv = _applied(p, v), _applied(q, v)
-                cx, cy, cz = cross(v[0], v[1], v[2], pv[0], pv[1], pv[2])
-                rx, ry, rz = _vee(o0, o1, o2)
-                v = _rate(
-                    p,
-                    (
-                        rx - trace * v[0] + qv[0] - cx,
-                        ry - trace * v[1] + qv[1] - cy,
-                        rz - trace * v[2] + qv[2] - cz,
-                    ),
-                )
-                k = k * k
-            s[RESULT, j] = k * v[0]
-            s[RESULT + 1, j] = k * v[1]
-            s[RESULT + 2, j] = k * v[2]
-
-    return sample_kernel(rates if order else orientation)
-
-
-@inlined
-def _turned(v, a, b):
-    """b - v x a."""
-    x, y, z = cross(v[0], v[1], v[2], a[0], a[1], a[2])
-    return b[0] - x, b[1] - y, b[2] - z
-
-
-@inlined
-def _applied(m, v):
-    """The matrix with columns m times v."""
-    return (
-        m[0][0] * v[0] + m[1][0] * v[1] + m[2][0] * v[2],
-        m[0][1] * v[0] + m[1][1] * v[1] + m[2][1] * v[2],
-        m[0][2] * v[0] + m[1][2] * v[1] + m[2][2] * v[2],
-    )
+def _crossed(v, m):
+    """[v] M."""
+    return Mat(cross(v, m.a), cross(v, m.b), cross(v, m.c))
 
 
 def _family(degree: int) -> Family:
-    kernels = (_kernel(degree, 0), _kernel(degree, 1), _kernel(degree, 2))
-    return Family(COEFFICIENTS + 9 * (degree + 1), near=kernels, far=kernels)
+    """The family of splines of a degree; its functions hold plain values only."""
+    quintic = degree == 5
+
+    @inlined
+    def frame(c, u, order):
+        """B at u, or its derivative of an order: f + r u + u (1 - u) g(u), exact at both ends."""
+        a, b = block(c, 2), block(c, 3)
+        d, e = (block(c, 4), block(c, 5)) if quintic else (scalar(0.0), scalar(0.0))
+        g = u * (u * (u * e + d) + b) + a
+        w, w1 = u - u * u, 1.0 - 2.0 * u
+        if order == 0:
+            return w * g + (u * block(c, 1) + block(c, 0))
+        g1 = u * ((3.0 * u) * e + 2.0 * d) + b
+        if order == 1:
+            return w * g1 + (w1 * g + block(c, 1))
+        return w * ((6.0 * u) * e + 2.0 * d) + 2.0 * (w1 * g1 - g)
+
+    @inlined
+    def point(c, u):
+        return quat_at(c, 0) * nearest(frame(c, u, 0))
+
+    @inlined
+    def velocity(c, u):
+        b = frame(c, u, 0)
+        q = nearest(b)
+        return 0.5 * _rate(_seen(q, b), vee(_seen(q, frame(c, u, 1))))
+
+    @inlined
+    def acceleration(c, u):
+        b = frame(c, u, 0)
+        q = nearest(b)
+        p, s, t = _seen(q, b), _seen(q, frame(c, u, 1)), _seen(q, frame(c, u, 2))
+        v = _rate(p, vee(s))
+        turned = vee(t - _crossed(v, s))
+        return 0.5 * _rate(p, turned - trace(s) * v + s @ v - cross(v, p @ v))
+
+    constants = COEFFICIENTS + 9 * (degree + 1)
+    return family(constants, point, velocity=velocity, acceleration=acceleration)
+
+
+@inlined
+def block(c, k):
+    """The k-th nine of B's constants, column by column."""
+    p = COEFFICIENTS + 9 * k
+    return Mat(vec_at(c, p), vec_at(c, p + 3), vec_at(c, p + 6))
 
 
 FAMILIES = {degree: _family(degree) for degree in (3, 5)}
@@ -288,7 +201,7 @@ class MovingFrame(SegmentCurve):
     support = None
     constant_rate = "no"
     family = FAMILIES[3]
-    operations = {"nearest rotations per sample": 1}
+    operations = Operations(others={"nearest rotations": Per(sample=1)})
     departs = {"test_keeps_given_signs": "a frame carries no sign"}
 
     def _fit(

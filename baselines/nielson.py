@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -10,10 +11,18 @@ from numpy.typing import ArrayLike
 
 from quatspline.families.nested import TRIANGLE
 from quatspline.fitting.bezier import set_controls
-from quatspline.fitting.bspline import keyframe
 from quatspline.fitting.nu_newton import newton_legs
-from quatspline.kernels.jit import CHANGE, ITERATIONS, REACH, RESIDUAL, compiled, fit_kernel
-from quatspline.kernels.scalars import arc_angle, slerp
+from quatspline.kernels.jit import (
+    CHANGE,
+    ITERATIONS,
+    REACH,
+    RESIDUAL,
+    compiled,
+    fit_kernel,
+    inlined,
+)
+from quatspline.kernels.operations import Operations, Per
+from quatspline.kernels.values import arc, keyframe, norm, put_quat, quat_at, slerp
 from quatspline.keyframes import Keyframes
 from quatspline.options import Count, OnFailure, Positive, Stop, per_keyframe
 from quatspline.segments import SegmentCurve
@@ -24,12 +33,11 @@ METHOD, BY_RESIDUAL, TOLERANCE, LIMIT, STATIONARY, TENSION = range(6)
 METHODS = ("jacobi", "gauss-seidel", "newton")
 JACOBI, GAUSS_SEIDEL, NEWTON = range(3)
 
-NEWTON_OPERATIONS: dict[str, float] = {
-    "slerps per sample": 6,
-    "exps per keyframe and iteration": 7,
-    "logs per keyframe and iteration": 2,
-    "logs per segment": 3,
-}
+NEWTON_OPERATIONS = Operations(
+    slerps=Per(sample=6),
+    logs=Per(segment=3),
+    iteration=Operations(exps=Per(keyframe=7), logs=Per(keyframe=2)),
+)
 
 STALLED = 4 * np.finfo(float).eps
 """A relative change this small moves nothing any more."""
@@ -73,13 +81,11 @@ class Nielson(SegmentCurve):
     iterative = True
     rescue = {"method": "newton"}
     family = TRIANGLE
-    operations = {
-        "slerps per sample": 6,
-        "slerps per inner keyframe and iteration": 2,
-        "slerps per inner keyframe": 3,
-        "slerps per segment": 2,
-        "logs per segment": 3,
-    }
+    operations = Operations(
+        slerps=Per(sample=6, inner_keyframe=3, segment=2),
+        logs=Per(segment=3),
+        iteration=Operations(slerps=Per(inner_keyframe=2)),
+    )
 
     def _fit(
         self,
@@ -106,10 +112,11 @@ class Nielson(SegmentCurve):
         if method == "newton":
             self.operations = NEWTON_OPERATIONS
         elif stop == "residual":  # a residual, of 3 slerps, before the first update and after each
-            more = {"inner keyframe and iteration": 5, "inner keyframe": 6}
-            self.operations = type(self).operations | {
-                f"slerps per {k}": n for k, n in more.items()
-            }
+            self.operations = replace(
+                self.operations,
+                slerps=Per(sample=6, inner_keyframe=6, segment=2),
+                iteration=Operations(slerps=Per(inner_keyframe=5)),
+            )
         limit = max_iterations
         switches = [METHODS.index(method), stop == "residual", tolerance, limit]
         parameters = np.array([*switches, ends == "stationary", *nu], dtype=float)
@@ -148,15 +155,6 @@ def _weights(h, closed, stationary, nu):
 
 
 @compiled
-def _point(d, i, sign):
-    """d_i of closed data continues as d_{i+n} = sign d_i."""
-    n = d.shape[0]
-    s = sign if i < 0 or i >= n else 1.0
-    i %= n
-    return s * d[i, 0], s * d[i, 1], s * d[i, 2], s * d[i, 3]
-
-
-@compiled
 def _ratio(x, theta, sine):
     """sin(x theta) / sin(theta), x in the limit."""
     return math.sin(x * theta) / sine if theta > 0.0 else x
@@ -165,42 +163,49 @@ def _ratio(x, theta, sine):
 @compiled
 def _sides(d, i, weights, sign):
     """(4): L_i and R_i."""
-    a, b, c = _point(d, i - 1, sign), _point(d, i, sign), _point(d, i + 1, sign)
-    left = slerp(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3], weights[i, 0])
-    right = slerp(b[0], b[1], b[2], b[3], c[0], c[1], c[2], c[3], weights[i, 1])
-    return left, right
+    a, b, c = keyframe(d, i - 1, sign), keyframe(d, i, sign), keyframe(d, i + 1, sign)
+    return slerp(a, b, weights[i, 0]), slerp(b, c, weights[i, 1])
 
 
 @compiled
-def _update(d, i, weights, sign, q, out):
+def _update(d, i, weights, sign, q):
     """(5) solved for d_i, the others and the angles held."""
-    a, b, c = _point(d, i - 1, sign), _point(d, i, sign), _point(d, i + 1, sign)
+    a, b, c = keyframe(d, i - 1, sign), keyframe(d, i, sign), keyframe(d, i + 1, sign)
     left, right = _sides(d, i, weights, sign)
-    ta, sa, _ = arc_angle(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3])
-    tc, sc, _ = arc_angle(b[0], b[1], b[2], b[3], c[0], c[1], c[2], c[3])
-    beta, sb, _ = arc_angle(
-        left[0], left[1], left[2], left[3], right[0], right[1], right[2], right[3]
-    )
+    ta, sa, _ = arc(a, b)
+    tc, sc, _ = arc(b, c)
+    beta, sb, _ = arc(left, right)
     lam, mu, delta = weights[i, 0], weights[i, 1], weights[i, 2]
     s1, s2 = _ratio(1.0 - delta, beta, sb), _ratio(delta, beta, sb)
     before, after = s1 * _ratio(1.0 - lam, ta, sa), s2 * _ratio(mu, tc, sc)
     own = s1 * _ratio(lam, ta, sa) + s2 * _ratio(1.0 - mu, tc, sc)
-    norm = 0.0
-    for k in range(4):
-        out[i, k] = (q[i, k] - before * a[k] - after * c[k]) / own
-        norm += out[i, k] * out[i, k]
-    norm = math.sqrt(norm)
-    for k in range(4):
-        out[i, k] /= norm
+    p = (1.0 / own) * (quat_at(q[i], 0) - before * a - after * c)
+    return (1.0 / norm(p)) * p
 
 
 @compiled
 def _miss(d, i, weights, sign, q):
     """The rotation angle between slerp(L_i, R_i, delta_i) and q_i."""
-    a, b = _sides(d, i, weights, sign)
-    p = slerp(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3], weights[i, 2])
-    theta, _, _ = arc_angle(p[0], p[1], p[2], p[3], q[i, 0], q[i, 1], q[i, 2], q[i, 3])
+    left, right = _sides(d, i, weights, sign)
+    theta, _, _ = arc(slerp(left, right, weights[i, 2]), quat_at(q[i], 0))
     return 2.0 * theta
+
+
+@compiled
+def _change(d, old):
+    """||d - old|| / ||d||."""
+    moved, size = 0.0, 0.0
+    for i in range(d.shape[0]):
+        step = quat_at(d[i], 0) - quat_at(old[i], 0)
+        moved += step @ step
+        size += quat_at(d[i], 0) @ quat_at(d[i], 0)
+    return math.sqrt(moved / size)
+
+
+@inlined
+def _copy(source, target):
+    for i in range(source.shape[0]):
+        put_quat(target[i], 0, quat_at(source[i], 0))
 
 
 @compiled
@@ -224,24 +229,15 @@ def _iterate(q, weights, closed, sign, parameters, report):
     change = 0.0
     count = 0
     while count < limit and first < last and not (by_residual and residual <= tolerance):
-        for i in range(n):
-            for k in range(4):
-                old[i, k] = d[i, k]
+        _copy(d, old)
         source = old if jacobi else d
         for i in range(first, last):
-            _update(source, i, weights, sign, q, d)
-        moved, size = 0.0, 0.0
-        for i in range(n):
-            for k in range(4):
-                moved += (d[i, k] - old[i, k]) ** 2
-                size += d[i, k] ** 2
-        change = math.sqrt(moved / size)
+            put_quat(d[i], 0, _update(source, i, weights, sign, q))
+        change = _change(d, old)
         count += 1
         if not change < math.inf:  # no number any more: the last controls that were some
             change = math.inf
-            for i in range(n):
-                for k in range(4):
-                    d[i, k] = old[i, k]
+            _copy(old, d)
             break
         if by_residual:
             residual = _residual(d, first, last, weights, sign, q)
@@ -257,12 +253,9 @@ def _set_iterated_legs(q, weights, closed, sign, parameters, legs, report):
     """R_i and L_{i+1} of every segment by the published iteration."""
     d = _iterate(q, weights, closed, sign, parameters, report)
     for i in range(legs.shape[0]):
-        a, b, mu = _point(d, i, sign), _point(d, i + 1, sign), weights[i, 1]
-        right = slerp(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3], mu)
-        lam = weights[(i + 1) % q.shape[0], 0]
-        left = slerp(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3], lam)
-        for k in range(4):
-            legs[i, 0, k], legs[i, 1, k] = right[k], left[k]
+        a, b = keyframe(d, i, sign), keyframe(d, i + 1, sign)
+        put_quat(legs[i, 0], 0, slerp(a, b, weights[i, 1]))
+        put_quat(legs[i, 1], 0, slerp(a, b, weights[(i + 1) % q.shape[0], 0]))
 
 
 @fit_kernel
@@ -276,7 +269,9 @@ def FIT(q, h, closed, sign, parameters, segments, report):
         newton_legs(q, weights, closed, sign, tolerance, by_change, limit, legs, report)
     else:
         _set_iterated_legs(q, weights, closed, sign, parameters, legs, report)
+    reach = 0.0
     for i in range(h.size):
-        right, left = keyframe(legs[i], 0), keyframe(legs[i], 1)
-        reach = set_controls(segments, i, _point(q, i, sign), right, left, _point(q, i + 1, sign))
-        report[REACH] = max(report[REACH], reach)
+        p, r = keyframe(q, i, sign), keyframe(q, i + 1, sign)
+        right, left = quat_at(legs[i, 0], 0), quat_at(legs[i, 1], 0)
+        reach = max(reach, set_controls(segments[i], p, right, left, r))
+    report[REACH] = reach

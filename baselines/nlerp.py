@@ -2,48 +2,47 @@
 
 from __future__ import annotations
 
-from numba import carray
-
-from quatspline.families.chords import SIZE, set_acceleration, set_chord, set_point, set_velocity
-from quatspline.fitting.tangents import keyframe
-from quatspline.kernels.jit import BLOCK, REACH, ROWS, fit_kernel, sample_kernel
+from quatspline.families.chords import (
+    SIZE,
+    set_chord,
+    weighted_acceleration,
+    weighted_point,
+    weighted_velocity,
+)
+from quatspline.kernels.family import family
+from quatspline.kernels.jit import REACH, fit_kernel, inlined
+from quatspline.kernels.operations import Operations, Per
+from quatspline.kernels.values import keyframe
 from quatspline.keyframes import Keyframes
-from quatspline.segments import Family, SegmentCurve
+from quatspline.segments import SegmentCurve
 
 
-@sample_kernel
-def ORIENTATION(sheet, n):
+@inlined
+def point(c, u):
     """(1)."""
-    s = carray(sheet, (ROWS, BLOCK))
-    for j in range(n):
-        set_point(s, j, 1.0 - s[0, j], s[0, j])
+    return weighted_point(c, 1.0 - u, u)
 
 
-@sample_kernel
-def VELOCITY(sheet, n):
-    """(2): weights 1 - u and u in chords.py (1)."""
-    s = carray(sheet, (ROWS, BLOCK))
-    for j in range(n):
-        set_velocity(s, j, 1.0 - s[0, j], -1.0, s[0, j], 1.0)
+@inlined
+def velocity(c, u):
+    """(2): weights 1 - u and u in chords.py (2)."""
+    return weighted_velocity(c, 1.0 - u, -1.0, u, 1.0)
 
 
-@sample_kernel
-def ACCELERATION(sheet, n):
-    """The same in chords.py (2)."""
-    s = carray(sheet, (ROWS, BLOCK))
-    for j in range(n):
-        set_acceleration(s, j, 1.0 - s[0, j], -1.0, 0.0, s[0, j], 1.0, 0.0)
+@inlined
+def acceleration(c, u):
+    """The same in chords.py (3)."""
+    return weighted_acceleration(c, 1.0 - u, -1.0, 0.0, u, 1.0, 0.0)
 
 
 @fit_kernel
 def FIT(q, h, closed, sign, parameters, segments, report):
     """The chord from each keyframe to the next."""
+    reach = 0.0
     for i in range(h.size):
-        theta = set_chord(segments, i, keyframe(q, i, sign), keyframe(q, i + 1, sign))
-        report[REACH] = max(report[REACH], theta)
-
-
-_KERNELS = (ORIENTATION, VELOCITY, ACCELERATION)
+        theta = set_chord(segments[i], keyframe(q, i, sign), keyframe(q, i + 1, sign))
+        reach = max(reach, theta)
+    report[REACH] = reach
 
 
 class Nlerp(SegmentCurve):
@@ -64,8 +63,8 @@ class Nlerp(SegmentCurve):
     order = 2
     support = 2
     constant_rate = "no"
-    family = Family(SIZE, near=_KERNELS, far=_KERNELS)
-    operations = {"square roots per sample": 1, "logs per segment": 1}
+    family = family(SIZE, point, velocity=velocity, acceleration=acceleration)
+    operations = Operations(roots=Per(sample=1), logs=Per(segment=1))
 
     def _fit(self, keyframes: Keyframes) -> None:
         self._solve(FIT)

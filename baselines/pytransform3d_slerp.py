@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from quatspline.keyframes import Keyframes
-from quatspline.peers.wrapping import PeerCurve, pairs, with_return
+from quatspline.peers.wrapping import PeerCurve, with_return
 from quatspline.quaternion import FloatArray
 
 
@@ -30,7 +30,7 @@ class Pytransform3dSlerp(PeerCurve):
         self.keys = with_return(keyframes)
 
     def _orientation(self, t: FloatArray) -> FloatArray:
-        segment, u = pairs(self._keyframes.knots, t)
+        segment, u = self.keyframes.locate(t)
         order = np.argsort(segment, kind="stable")
         used, starts = np.unique(segment[order], return_index=True)
         q = np.empty((t.size, 4))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from quatspline import quaternion
 from quatspline.keyframes import Keyframes
-from quatspline.peers.wrapping import PeerCurve, pairs, with_return
+from quatspline.peers.wrapping import PeerCurve, with_return
 from quatspline.quaternion import FloatArray
 
 
@@ -31,11 +31,11 @@ class RowanSlerp(PeerCurve):
         self.keys = with_return(keyframes)
 
     def _orientation(self, t: FloatArray) -> FloatArray:
-        i, u = pairs(self._keyframes.knots, t)
+        i, u = self.keyframes.locate(t)
         return self.library.slerp(self.keys[i], self.keys[i + 1], u, ensure_shortest=False)
 
     def _velocity(self, t: FloatArray) -> FloatArray:
-        i, u = pairs(self._keyframes.knots, t)
+        i, u = self.keyframes.locate(t)
         slope = self.library.slerp_prime(self.keys[i], self.keys[i + 1], u, ensure_shortest=False)
         rate = quaternion.mul(quaternion.conj(self._orientation(t)), slope)[:, 1:]
         return 2.0 * rate / self._keyframes.spacings[i][:, None]

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from typing import Literal
 
 import numpy as np
 
-from quatspline.families.nested import TRIANGLE, restored
+from quatspline.families.nested import TRIANGLE
 from quatspline.fitting.bezier import set_controls
-from quatspline.fitting.tangents import CHART, SECANT, end_velocity, keyframe, moved
-from quatspline.kernels.jit import REACH, compiled, fit_kernel
-from quatspline.kernels.scalars import slerp
+from quatspline.fitting.tangents import CHART, SECANT, end_velocity
+from quatspline.kernels.jit import REACH, compiled, fit_kernel, inlined
+from quatspline.kernels.operations import Operations, Per
+from quatspline.kernels.values import exp, keyframe, norm, put_quat, restored, slerp, unit
 from quatspline.keyframes import Keyframes
 from quatspline.segments import SegmentCurve
 
@@ -50,7 +50,7 @@ class ShoemakeBezier(SegmentCurve):
     constant_rate: Literal["everywhere", "interior", "no"] = "interior"
     non_uniform = False
     family = TRIANGLE
-    operations = {"slerps per sample": 6, "slerps per inner keyframe": 1, "logs per segment": 3}
+    operations = Operations(slerps=Per(sample=6, inner_keyframe=1), logs=Per(segment=3))
 
     def _fit(
         self,
@@ -67,42 +67,37 @@ class ShoemakeBezier(SegmentCurve):
         self._solve(FIT, np.array([1.0 / 3.0 if handle == "third" else 1.0, code]))
 
 
-@compiled
+@inlined
 def _double(p, q):
     """p reflected about q."""
-    k = 2.0 * (p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3])
-    return k * q[0] - p[0], k * q[1] - p[1], k * q[2] - p[2], k * q[3] - p[3]
+    return (2.0 * (p @ q)) * q - p
 
 
 @compiled
 def _handle(q, sign, i, share):
     """(1) and the first of (2) at a keyframe with neighbours."""
     b, c = keyframe(q, i, sign), keyframe(q, i + 1, sign)
-    a = _double(keyframe(q, i - 1, sign), b)
-    w, x, y, z = a[0] + c[0], a[1] + c[1], a[2] + c[2], a[3] + c[3]
-    length = math.sqrt(w * w + x * x + y * y + z * z)
-    if length < ANTIPODES:  # half a turn forth and back: no mean direction, no velocity
+    total = _double(keyframe(q, i - 1, sign), b) + c
+    if norm(total) < ANTIPODES:  # half a turn forth and back: no mean direction, no velocity
         return b
-    k = 1.0 / length
-    p = slerp(b[0], b[1], b[2], b[3], k * w, k * x, k * y, k * z, share)
-    return restored(p, b)
+    return restored(slerp(b, unit(total), share), b)
 
 
 @fit_kernel
 def FIT(q, h, closed, sign, parameters, segments, report):
     """Controls of every segment; parameters: the share of (2), ends."""
-    n = q.shape[0]
-    handles, time, x = np.empty((n, 4)), np.empty(5), np.empty((5, 3))
+    n, reach = q.shape[0], 0.0
+    handles, chart = np.empty((n, 4)), np.empty((5, 4))
     for i in range(n):
         p = keyframe(q, i, sign)
         if closed or 0 < i < n - 1:
             p = _handle(q, sign, i, parameters[0])
         elif parameters[1] != STATIONARY:
-            v = end_velocity(q, h, i, 3, parameters[1], time, x)
-            k = parameters[0] * h[0]
-            p = moved(p, k * v[0], k * v[1], k * v[2])
-        handles[i, 0], handles[i, 1], handles[i, 2], handles[i, 3] = p
+            v = end_velocity(q, h, i, 3, parameters[1], chart)
+            p = p * exp((parameters[0] * h[0]) * v)
+        put_quat(handles[i], 0, p)
     for i in range(h.size):
         p0, p3 = keyframe(q, i, sign), keyframe(q, i + 1, sign)
         p1, p2 = keyframe(handles, i, sign), _double(keyframe(handles, i + 1, sign), p3)
-        report[REACH] = max(report[REACH], set_controls(segments, i, p0, p1, p2, p3))
+        reach = max(reach, set_controls(segments[i], p0, p1, p2, p3))
+    report[REACH] = reach

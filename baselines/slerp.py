@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from quatspline.families.arcs import ARC, set_arc
 from quatspline.kernels.jit import REACH, fit_kernel
+from quatspline.kernels.operations import Operations, Per
+from quatspline.kernels.values import keyframe
 from quatspline.keyframes import Keyframes
 from quatspline.segments import SegmentCurve
 
@@ -25,7 +27,7 @@ class Slerp(SegmentCurve):
     support = 2
     constant_rate = "everywhere"
     family = ARC
-    operations = {"slerps per sample": 1, "logs per segment": 1}
+    operations = Operations(slerps=Per(sample=1), logs=Per(segment=1))
 
     def _fit(self, keyframes: Keyframes) -> None:
         self._solve(FIT)
@@ -34,20 +36,8 @@ class Slerp(SegmentCurve):
 @fit_kernel
 def FIT(q, h, closed, sign, parameters, segments, report):
     """The arc from each keyframe to the next."""
-    n = q.shape[0]
+    reach = 0.0
     for i in range(h.size):
-        j, s = (i + 1, 1.0) if i + 1 < n else (0, sign)
-        theta = set_arc(
-            segments,
-            i,
-            0,
-            q[i, 0],
-            q[i, 1],
-            q[i, 2],
-            q[i, 3],
-            s * q[j, 0],
-            s * q[j, 1],
-            s * q[j, 2],
-            s * q[j, 3],
-        )
-        report[REACH] = max(report[REACH], theta)
+        theta = set_arc(segments[i], 0, keyframe(q, i, sign), keyframe(q, i + 1, sign))
+        reach = max(reach, theta)
+    report[REACH] = reach

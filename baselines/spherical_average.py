@@ -7,13 +7,29 @@ from typing import Literal
 
 import numpy as np
 
-from quatspline.families.means import SIZE, SPHERICAL_MEAN, WEIGHTS, curvature, newton_step
-from quatspline.fitting import bspline
+from quatspline.families.means import SPHERICAL_MEAN, newton_step, set_mean
 from quatspline.fitting.block_tridiagonal import backward, forward, workspace
+from quatspline.fitting.bspline import (
+    end_velocity,
+    knot_weights,
+    middle,
+    spacing,
+    weight_after,
+    weight_before,
+)
 from quatspline.fitting.mean_leaps import leaps, share_a_half
-from quatspline.fitting.tangents import keyframe, moved
-from quatspline.kernels.jit import CHANGE, ITERATIONS, RESIDUAL, compiled, fit_kernel, inlined
-from quatspline.kernels.scalars import exp, log_between, mul
+from quatspline.kernels.jacobians import inverse_jacobian_matrix
+from quatspline.kernels.jit import (
+    CHANGE,
+    ITERATIONS,
+    REACH,
+    RESIDUAL,
+    compiled,
+    fit_kernel,
+    inlined,
+)
+from quatspline.kernels.operations import Operations, Per
+from quatspline.kernels.values import exp, keyframe, log, norm, put_quat, quat_at, unit, vec_at
 from quatspline.keyframes import Keyframes
 from quatspline.options import Count, OnFailure, Positive, Stop
 from quatspline.segments import SegmentCurve
@@ -31,7 +47,7 @@ class SphericalAverage(SegmentCurve):
     """Interpolating cubic B-spline by spherical averages, Buss & Fillmore (2001).
 
     C^2, interpolating, global, order 4.  The curve is the mean on S^3 of four controls d_j with the
-    weights of a cubic B-spline on the keyframes' knots (`spherical_mean`, `bspline`), so that at a
+    weights of a cubic B-spline on the keyframes' knots (`means`, `bspline`), so that at a
     keyframe, with weights m_i, c_i, p_i,
 
         m_i ln(q_i^-1 d_{i-1}) + c_i ln(q_i^-1 d_i) + p_i ln(q_i^-1 d_{i+1}) = 0                   (1)
@@ -58,7 +74,7 @@ class SphericalAverage(SegmentCurve):
     constant_rate = "everywhere"
     iterative = True
     family = SPHERICAL_MEAN
-    operations = {"logs per sample": 12, "logs per keyframe and iteration": 3}
+    operations = Operations(logs=Per(sample=12), iteration=Operations(logs=Per(keyframe=3)))
     departs = {
         "test_keeps_given_signs": "controls of so long a step share no half sphere: no solution found"
     }
@@ -79,42 +95,12 @@ class SphericalAverage(SegmentCurve):
 
 
 @inlined
-def _block(f, l):
-    """f Jr^-1(2 l) = f (I + [l] + k [l]^2), row by row."""
-    x, y, z = l
-    r = x * x + y * y + z * z
-    k = curvature(r)
-    return (
-        f * (1.0 + k * (x * x - r)),
-        f * (k * x * y - z),
-        f * (k * x * z + y),
-        f * (k * x * y + z),
-        f * (1.0 + k * (y * y - r)),
-        f * (k * y * z - x),
-        f * (k * x * z - y),
-        f * (k * y * z + x),
-        f * (1.0 + k * (z * z - r)),
-    )
-
-
-@inlined
 def _sides(q, d, i, m, p, sign):
-    """The three logarithms of (1) and its left side."""
-    k = (q[i, 0], q[i, 1], q[i, 2], q[i, 3])
-    a = log_between(*k, *keyframe(d, i - 1, sign))
-    b = log_between(*k, *keyframe(d, i, sign))
-    c = log_between(*k, *keyframe(d, i + 1, sign))
-    own = 1.0 - m[i] - p[i]
-    return (
-        a,
-        b,
-        c,
-        (
-            m[i] * a[0] + own * b[0] + p[i] * c[0],
-            m[i] * a[1] + own * b[1] + p[i] * c[1],
-            m[i] * a[2] + own * b[2] + p[i] * c[2],
-        ),
-    )
+    """The three logarithms of (1), their weights, and its left side."""
+    k = quat_at(q[i], 0)
+    a, b, c = keyframe(d, i - 1, sign), keyframe(d, i, sign), keyframe(d, i + 1, sign)
+    l, w = (log(~k * a), log(~k * b), log(~k * c)), (m[i], 1.0 - m[i] - p[i], p[i])
+    return l, w, w[0] * l[0] + w[1] * l[1] + w[2] * l[2]
 
 
 @compiled
@@ -123,14 +109,11 @@ def _look(problem, d):
     q, m, p, sign, first, last = problem
     total = worst = 0.0
     for i in range(first, last):
-        _, _, _, (x, y, z) = _sides(q, d, i, m, p, sign)
-        total += x * x + y * y + z * z
-        b = keyframe(d, i, sign)
-        w = (m[i], 1.0 - m[i] - p[i], p[i], 0.0)
-        k = (q[i, 0], q[i, 1], q[i, 2], q[i, 3])
-        x, y, z = newton_step(k, keyframe(d, i - 1, sign), b, keyframe(d, i + 1, sign), b, w)
-        worst = max(worst, x * x + y * y + z * z)
-    return total, 2.0 * math.sqrt(worst)
+        _, w, side = _sides(q, d, i, m, p, sign)
+        total += side @ side
+        a, b, c = keyframe(d, i - 1, sign), keyframe(d, i, sign), keyframe(d, i + 1, sign)
+        worst = max(worst, norm(newton_step(quat_at(q[i], 0), (a, b, c, b), (*w, 0.0))))
+    return total, 2.0 * worst
 
 
 @compiled
@@ -139,17 +122,15 @@ def _direction(problem, d, work):
     q, m, p, sign, first, last = problem
     n, cyclic = last - first, first == 0
     for k in range(n):
-        i = first + k
-        a, b, c, (x, y, z) = _sides(q, d, i, m, p, sign)
-        own = 1.0 - m[i] - p[i]
-        lower, diagonal, upper = _block(m[i], a), _block(own, b), _block(p[i], c)
-        forward(k, n, cyclic, lower, diagonal, upper, (-x, -y, -z), work)
+        l, w, side = _sides(q, d, first + k, m, p, sign)
+        lower, own = w[0] * inverse_jacobian_matrix(l[0]), w[1] * inverse_jacobian_matrix(l[1])
+        forward(k, n, cyclic, lower, own, w[2] * inverse_jacobian_matrix(l[2]), -side, work)
     backward(n, cyclic, work)
     longest = 0.0
     for k in range(n):
-        size = work[3][k, 0] ** 2 + work[3][k, 1] ** 2 + work[3][k, 2] ** 2
+        size = norm(vec_at(work[3][k], 0))
         longest = max(longest, size) if size < math.inf else math.inf
-    return math.sqrt(longest)
+    return longest
 
 
 @compiled
@@ -157,13 +138,10 @@ def _update(d, old, first, x, length):
     """d_i = old_i exp(length x_i); returns the change, ||d - old|| / ||d||."""
     total = 0.0
     for k in range(x.shape[0]):
-        i = first + k
-        turn = exp(length * x[k, 0], length * x[k, 1], length * x[k, 2])
-        w, a, b, c = mul(old[i, 0], old[i, 1], old[i, 2], old[i, 3], *turn)
-        s = 1.0 / math.sqrt(w * w + a * a + b * b + c * c)
-        d[i, 0], d[i, 1], d[i, 2], d[i, 3] = s * w, s * a, s * b, s * c
-        for j in range(4):
-            total += (d[i, j] - old[i, j]) ** 2
+        before = quat_at(old[first + k], 0)
+        after = unit(before * exp(length * vec_at(x[k], 0)))
+        put_quat(d[first + k], 0, after)
+        total += (after - before) @ (after - before)
     return math.sqrt(total / d.shape[0])
 
 
@@ -171,8 +149,7 @@ def _update(d, old, first, x, length):
 def _copy(source, target):
     # a slice assignment would compile its error message's string functions: 13 s
     for i in range(source.shape[0]):
-        for k in range(4):
-            target[i, k] = source[i, k]
+        put_quat(target[i], 0, quat_at(source[i], 0))
 
 
 @compiled
@@ -208,9 +185,7 @@ def _iterate(problem, d, parameters, report):
 @inlined
 def _beyond(d, i, j):
     """The reflection d_i d_j^-1 d_i."""
-    a = (d[i, 0], d[i, 1], d[i, 2], d[i, 3])
-    w, x, y, z = mul(*a, d[j, 0], -d[j, 1], -d[j, 2], -d[j, 3])
-    return mul(w, x, y, z, *a)
+    return quat_at(d[i], 0) * ~quat_at(d[j], 0) * quat_at(d[i], 0)
 
 
 @compiled
@@ -218,7 +193,7 @@ def _control(q, d, i, sign, closed, clamped):
     """d_i for i = -1 ... n, phantoms included."""
     n = d.shape[0]
     if not closed and clamped and (i < 0 or i >= n):
-        return keyframe(q, 0 if i < 0 else n - 1, 1.0)
+        return quat_at(q[0 if i < 0 else n - 1], 0)
     if not closed and i < 0:
         return _beyond(d, 0, 1)
     if not closed and i >= n:
@@ -226,35 +201,36 @@ def _control(q, d, i, sign, closed, clamped):
     return keyframe(d, i, sign)
 
 
+@inlined
+def _controls(q, d, i, sign, closed, clamped):
+    """d_{i-1} ... d_{i+2}."""
+    return (
+        _control(q, d, i - 1, sign, closed, clamped),
+        _control(q, d, i, sign, closed, clamped),
+        _control(q, d, i + 1, sign, closed, clamped),
+        _control(q, d, i + 2, sign, closed, clamped),
+    )
+
+
+@inlined
+def _weights(h, i, closed, clamped):
+    """m_i, the coefficients of B_{i+1} + B_{i+2} and p_{i+1} on segment i."""
+    h0, h1 = spacing(h, i - 2, closed, clamped), spacing(h, i - 1, closed, clamped)
+    h3, h4 = spacing(h, i + 1, closed, clamped), spacing(h, i + 2, closed, clamped)
+    inner = middle(h1, h[i], h3, weight_before(h1, h[i], h3))
+    return weight_before(h0, h1, h[i]), inner, weight_after(h[i], h3, h4)
+
+
 @compiled
 def _write(q, h, d, sign, closed, clamped, segments):
-    """Constants of `spherical_mean`; returns whether the curve leaps, as means that are not unique do."""
+    """Constants of `means`; returns whether the curve leaps, as means that are not unique do."""
     leaping = False
     for i in range(h.size):
-        h0, h1 = (
-            bspline.spacing(h, i - 2, closed, clamped),
-            bspline.spacing(h, i - 1, closed, clamped),
-        )
-        h3, h4 = (
-            bspline.spacing(h, i + 1, closed, clamped),
-            bspline.spacing(h, i + 2, closed, clamped),
-        )
-        before = bspline.weight_before(h0, h1, h[i])
-        after = bspline.weight_after(h[i], h3, h4)
-        c = bspline.middle(h1, h[i], h3, bspline.weight_before(h1, h[i], h3))
-        points = (
-            _control(q, d, i - 1, sign, closed, clamped),
-            _control(q, d, i, sign, closed, clamped),
-            _control(q, d, i + 1, sign, closed, clamped),
-            _control(q, d, i + 2, sign, closed, clamped),
-        )
-        for k in range(4):
-            for j in range(4):
-                segments[i, 4 * k + j] = points[k][j]
-            segments[i, WEIGHTS + 1 + k] = c[k]
-        segments[i, WEIGHTS], segments[i, SIZE - 1] = before, after
+        points = _controls(q, d, i, sign, closed, clamped)
+        weights = _weights(h, i, closed, clamped)
+        set_mean(segments[i], points, *weights)
         if not (leaping or share_a_half(points)):
-            leaping = leaps(points, before, c, after)
+            leaping = leaps(points, *weights)
     return leaping
 
 
@@ -263,15 +239,17 @@ def FIT(q, h, closed, sign, parameters, segments, report):
     """Solve for the controls, then store them segment by segment."""
     n, clamped = q.shape[0], parameters[3] > 0.0
     m, p = np.empty(h.size + 1), np.empty(h.size + 1)
-    bspline.knot_weights(h, closed, clamped, m, p)
+    knot_weights(h, closed, clamped, m, p)
     d = q.copy()
     if clamped:
-        for end in range(2):
-            i, k = (n - 1, -h[n - 2] / 3.0) if end else (0, h[0] / 3.0)
-            x, y, z = bspline.end_velocity(q, h, end == 1)
-            a = moved(keyframe(q, i, 1.0), k * x, k * y, k * z)
-            d[i, 0], d[i, 1], d[i, 2], d[i, 3] = a
+        start, end = (
+            (h[0] / 3.0) * end_velocity(q, h, False),
+            (h[-1] / 3.0) * end_velocity(q, h, True),
+        )
+        put_quat(d[0], 0, quat_at(q[0], 0) * exp(start))
+        put_quat(d[n - 1], 0, quat_at(q[n - 1], 0) * exp(-end))
     first, last = (0, n) if closed else (1, n - 1)
     _iterate((q, m, p, sign, first, last), d, parameters, report)
     if _write(q, h, d, sign, closed, clamped, segments):
         report[RESIDUAL] = math.inf
+    report[REACH] = 0.0

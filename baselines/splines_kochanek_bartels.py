@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from quatspline.keyframes import Keyframes
-from quatspline.peers.wrapping import PeerCurve, published_velocity, rows, unit_quaternions
+from quatspline.peers.splines import SplinesCurve
 from quatspline.quaternion import FloatArray
 
 
-class SplinesKochanekBartels(PeerCurve):
+class SplinesKochanekBartels(SplinesCurve):
     """``splines.quaternion.KochanekBartels`` with one (tension, continuity, bias) for all keyframes.
 
     C^1 for continuity = 0 and C^0 otherwise, interpolating, local (four keyframes shape a segment), open
@@ -20,16 +20,7 @@ class SplinesKochanekBartels(PeerCurve):
     """
 
     title = "splines KochanekBartels"
-    reference = "splines"
-    peer = "splines"
-    continuity = 1
-    order = 3
-    support = 4
     constant_rate = "interior"
-    departs = {
-        "test_equivariance_at_half_turns": "rounding decides the way round at half a turn",
-        "test_keeps_given_signs": "puts neighbours on one hemisphere itself",
-    }
 
     def _fit(
         self,
@@ -47,15 +38,7 @@ class SplinesKochanekBartels(PeerCurve):
             self.constant_rate = "no"
         if (tension, continuity, bias) != (0.0, 0.0, 0.0):
             self.order = 2
-        self.curve = KochanekBartels(
-            unit_quaternions(keyframes.quaternions),
-            keyframes.knots.tolist(),
-            tcb=(tension, continuity, bias),
-            endconditions="closed" if keyframes.closed else "natural",
-        )
-
-    def _orientation(self, t: FloatArray) -> FloatArray:
-        return rows(self.curve.evaluate(t), self._keyframes.quaternions[0])
+        self._with_ends(KochanekBartels, keyframes, tcb=(tension, continuity, bias))
 
     def _published(self, t: FloatArray, order: int) -> FloatArray | None:
-        return published_velocity(self.curve, t, self._orientation(t)) if order == 1 else None
+        return self._published_velocity(t) if order == 1 else None

@@ -9,8 +9,10 @@ import numpy as np
 from quatspline.families.arcs import SIZE as ARC
 from quatspline.families.arcs import set_arc
 from quatspline.families.nested import SQUAD
-from quatspline.fitting.tangents import CHART, SECANT, chart_velocities, keyframe, moved, step
+from quatspline.fitting.tangents import CHART, SECANT, chart_velocities, step
 from quatspline.kernels.jit import REACH, compiled, fit_kernel
+from quatspline.kernels.operations import Operations, Per
+from quatspline.kernels.values import exp, keyframe, log, put_vec, vec_at
 from quatspline.keyframes import Keyframes
 from quatspline.segments import SegmentCurve
 
@@ -48,7 +50,7 @@ class Squad(SegmentCurve):
     support = 4
     constant_rate: Literal["everywhere", "no"] = "everywhere"
     family = SQUAD
-    operations = {"slerps per sample": 3, "logs per keyframe": 6, "exps per keyframe": 2}
+    operations = Operations(slerps=Per(sample=3), logs=Per(keyframe=6), exps=Per(keyframe=2))
 
     def _fit(
         self,
@@ -70,14 +72,12 @@ def _pull(q, h, sign, i, textbook, v):
 
     a_i = q_i exp((h_i L_{i-1} - h_{i-1} L_i) / (2 (h_{i-1} + h_i))); the textbook takes h = 1.
     """
-    n = h.size
     a, b = step(q, i - 1, i, sign), step(q, i, i + 1, sign)
-    h0, h1 = h[(i - 1) % n], h[i]
+    h0, h1 = h[(i - 1) % h.size], h[i]
     s0, s1 = (1.0, 1.0) if textbook else (h0, h1)
-    for c in range(3):
-        pull = (s1 * a[c] - s0 * b[c]) / (s0 + s1)
-        v[0, c] = (b[c] + pull) / h1
-        v[1, c] = (a[c] - pull) / h0
+    pull = (1.0 / (s0 + s1)) * (s1 * a - s0 * b)
+    put_vec(v[0], 0, (1.0 / h1) * (b + pull))
+    put_vec(v[1], 0, (1.0 / h0) * (a - pull))
 
 
 @fit_kernel
@@ -90,12 +90,11 @@ def FIT(q, h, closed, sign, parameters, segments, report):
         v[i, 0], v[i, 1] = slopes[i], slopes[i]
         if inner != TWO_A and (closed or 0 < i < n - 1):
             _pull(q, h, sign, i, inner == TEXTBOOK, v[i])
+    reach = 0.0
     for i in range(h.size):
         p, r = keyframe(q, i, sign), keyframe(q, i + 1, sign)
-        x, y, z = step(q, i, i + 1, sign)
-        f, g, k = v[i, 0], v[(i + 1) % n, 1], 0.5 * h[i]
-        a = moved(p, k * f[0] - 0.5 * x, k * f[1] - 0.5 * y, k * f[2] - 0.5 * z)
-        b = moved(r, 0.5 * x - k * g[0], 0.5 * y - k * g[1], 0.5 * z - k * g[2])
-        r0 = set_arc(segments, i, 0, p[0], p[1], p[2], p[3], r[0], r[1], r[2], r[3])
-        r1 = set_arc(segments, i, ARC, a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3])
-        report[REACH] = max(report[REACH], r0, r1)
+        l = log(~p * r)
+        a = p * exp(0.5 * (h[i] * vec_at(v[i, 0], 0) - l))  # (2)
+        b = r * exp(0.5 * (l - h[i] * vec_at(v[(i + 1) % n, 1], 0)))
+        reach = max(reach, set_arc(segments[i], 0, p, r), set_arc(segments[i], ARC, a, b))
+    report[REACH] = reach

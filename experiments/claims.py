@@ -25,9 +25,9 @@ from quatspline.claims.claim import (
 from quatspline.claims.published import published, works
 from quatspline.curve import Curve
 from quatspline.figures import style
-from quatspline.figures.heat import ROW, label_cells
+from quatspline.figures.heat import ROW, label_cells, scheme_rows
 from quatspline.instruments.trials import Row
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 
 TITLE = "Claims and verdicts"
 PAPER = False
@@ -206,7 +206,7 @@ def _matrix(ax: Any, verdicts: pd.DataFrame, texts: pd.DataFrame) -> None:
         for name in heads
     ]
     ax.set_xticks(range(verdicts.shape[1]), heads, fontsize=6, rotation=90)
-    ax.set_yticks(range(len(verdicts)), list(verdicts.index))
+    scheme_rows(ax, list(verdicts.index))
     ax.tick_params(length=0, top=True, labeltop=True, bottom=False, labelbottom=False)
     ax.grid(visible=False)
 

@@ -19,8 +19,8 @@ from quatspline.segments import SegmentCurve
 from quatspline.trajectories.paper import CASES
 
 KINDS = {
-    **dict.fromkeys(("log", "log_between", "turn", "small_log"), "logs"),
-    **dict.fromkeys(("exp", "turned", "set_jet"), "exps"),
+    **dict.fromkeys(("log", "turn"), "logs"),
+    **dict.fromkeys(("exp", "put_jet"), "exps"),
     "slerp": "slerps",
 }
 """Functions that are one operation each, whatever they call."""
@@ -56,7 +56,7 @@ def watch(modules: list[Any]) -> None:
 
 
 def solve(self: SegmentCurve, kernel: Any, parameters: Any = ()) -> None:
-    frames, report = self._keyframes, np.zeros((1, 4))
+    frames, report = self.keyframes, np.zeros((1, 4))
     segments = np.zeros((1, frames.spacings.size, self.family.constants))
     parameters = np.asarray(parameters, dtype=float)
     sign = float(frames.signs[0])
@@ -83,7 +83,7 @@ def main(*asked: str) -> None:
         for n, m in sys.modules.items()
         if n.startswith(("quatspline.families.", "quatspline.fitting."))
     ]
-    watch([*kernels, sys.modules["quatspline.kernels.scalars"], *map(sys.modules.get, schemes)])
+    watch([*kernels, sys.modules["quatspline.kernels.values"], *map(sys.modules.get, schemes)])
     SegmentCurve._solve = solve  # type: ignore[assignment]
     for job in jobs:
         print(json.dumps(counted(*job)))

@@ -23,12 +23,6 @@ class Toy(Curve):
     def _fit(self, keyframes: Any) -> None:
         """Nothing to prepare."""
 
-    def located(self, t: FloatArray) -> tuple[Any, FloatArray]:
-        """Segment and local parameter of times since the first keyframe."""
-        knots = self.keyframes.knots
-        segment = np.clip(np.searchsorted(knots, t, side="right") - 1, 0, len(knots) - 2)
-        return segment, (t - knots[segment]) / np.diff(knots)[segment]
-
     def slerped(self, segment: Any, u: FloatArray) -> FloatArray:
         q = self.keyframes.quaternions
         return quaternion.slerp(q[segment], q[segment + 1], u)
@@ -43,8 +37,12 @@ class Turn(Toy):
     def _orientation(self, t: FloatArray) -> FloatArray:
         return quaternion.exp(self.theta(t)[0][:, None] * AXIS)
 
-    def _velocity(self, t: FloatArray) -> FloatArray:
+    def omega(self, t: FloatArray) -> FloatArray:
+        """The body rate at times since the first keyframe."""
         return 2.0 * self.theta(t)[1][:, None] * AXIS
+
+    def _velocity(self, t: FloatArray) -> FloatArray:
+        return self.omega(t)
 
     def _acceleration(self, t: FloatArray) -> FloatArray:
         return 2.0 * self.theta(t)[2][:, None] * AXIS

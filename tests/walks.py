@@ -1,13 +1,15 @@
 """Keyframes that the tests share, and what they have in common."""
 
+import sys
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
+import quatspline as qs
 from quatspline import quaternion
 from quatspline.curve import Curve
-from quatspline.options import declared
+from quatspline.options import declared_by
 from quatspline.quaternion import FloatArray
 
 TIGHT = 1e-11
@@ -27,16 +29,32 @@ def applies(condition: Callable[[type[Curve]], bool]) -> Callable[..., Any]:
     return mark
 
 
+def checks_in(module: str) -> list[Callable[..., Any]]:
+    """The checks of a module that run for every scheme."""
+    return [
+        function
+        for name, function in vars(sys.modules[module]).items()
+        if name.startswith("test_") and "scheme" in function.__code__.co_varnames[:2]
+    ]
+
+
+def runs_somewhere(check: Callable[..., Any]) -> bool:
+    """Whether some scheme meets a check's condition and has to pass it."""
+    condition = getattr(check, "condition", lambda scheme: True)
+    known = map(qs.scheme, qs.schemes())
+    return any(condition(scheme) and check.__name__ not in scheme.departs for scheme in known)
+
+
 def curve_of(scheme: type[Curve], times: Any, quaternions: Any, **given: Any) -> Curve:
     """A scheme's curve, solved tightly where it is solved at all."""
-    known = declared(scheme._fit)
+    known = declared_by(scheme)
     given = {"tolerance": TIGHT, **given} if "tolerance" in known else given
     return scheme(times, quaternions, **given)
 
 
 def excused(scheme: type[Curve]) -> dict[str, str]:
     """The option that hands back a curve that did not converge, where there is one."""
-    return {"on_failure": "return"} if "on_failure" in declared(scheme._fit) else {}
+    return {"on_failure": "return"} if "on_failure" in declared_by(scheme) else {}
 
 
 def uneven(count: int) -> FloatArray:

@@ -9,21 +9,26 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
+from quatspline.system import moved
+
 if TYPE_CHECKING:
     from quatspline.catalogue import build, scheme, schemes
     from quatspline.comparing import compare
     from quatspline.curve import Curve
+    from quatspline.kernels.operations import Operations, Per
     from quatspline.keyframes import Keyframes
     from quatspline.proposed.quartic import QuarticSpline
     from quatspline.solving import ConvergenceError, SolveReport
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 _HOMES = {
     "Curve": "quatspline.curve",
     "SolveReport": "quatspline.solving",
     "ConvergenceError": "quatspline.solving",
     "Keyframes": "quatspline.keyframes",
+    "Operations": "quatspline.kernels.operations",
+    "Per": "quatspline.kernels.operations",
     "QuarticSpline": "quatspline.proposed.quartic",
     "build": "quatspline.catalogue",
     "compare": "quatspline.comparing",
@@ -35,6 +40,8 @@ __all__ = [
     "ConvergenceError",
     "Curve",
     "Keyframes",
+    "Operations",
+    "Per",
     "QuarticSpline",
     "SolveReport",
     "__version__",
@@ -43,6 +50,9 @@ __all__ = [
     "scheme",
     "schemes",
 ]
+
+
+moved.install()
 
 
 def __getattr__(name: str) -> Any:

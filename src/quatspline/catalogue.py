@@ -7,6 +7,7 @@ entry points of the group ``quatspline.schemes``.
 
 from __future__ import annotations
 
+import copyreg
 import importlib
 import importlib.metadata
 import os
@@ -24,6 +25,8 @@ from quatspline.system.loading import load, passing, unfinished
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+
+    from quatspline.keyframes import Keyframes
 
 PACKAGE = Path(__file__).parent
 ENTRY_POINTS = "quatspline.schemes"
@@ -170,6 +173,15 @@ def build(
     return scheme(name)(times, quaternions, closed=closed, align=align, **options)
 
 
+def _by_name(curve: Curve) -> Any:
+    """How a curve is pickled: by its scheme's name, for a file loaded by path is no module elsewhere."""
+    return _rebuilt, (curve.name, *curve.__getstate__())
+
+
+def _rebuilt(name: str, keyframes: Keyframes, given: dict[str, Any]) -> Curve:
+    return scheme(name).from_keyframes(keyframes, **given)
+
+
 def _discover(files: tuple[Path, ...]) -> Iterator[Found]:
     yield from map(_from_file, files)
     for entry in sorted(importlib.metadata.entry_points(group=ENTRY_POINTS), key=lambda e: e.name):
@@ -224,6 +236,7 @@ def _broken(name: str, origin: str, error: BaseException) -> Found:
 
 def _usable(name: str, origin: str, scheme: type[Curve]) -> Found:
     scheme.name = name
+    copyreg.pickle(scheme, _by_name)
     if scheme.peer is not None:
         try:
             importlib.metadata.version(scheme.peer)

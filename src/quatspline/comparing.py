@@ -19,11 +19,10 @@ from quatspline.instruments.fairness import fairness
 from quatspline.instruments.rescue import solved
 from quatspline.instruments.trials import Row, attempted, facts
 from quatspline.keyframes import Keyframes
-from quatspline.options import declared
+from quatspline.options import among
 from quatspline.runs.experiment import Run
 from quatspline.solving import ConvergenceError
-from quatspline.timing.own_times import timed
-from quatspline.timing.practical import left_out
+from quatspline.timing.own_keyframes import left_out, seconds_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -117,7 +116,7 @@ def compared(
         rows.append({"scheme": name} | row)
     table = pd.DataFrame(rows).reindex(columns=COLUMNS)
     table["keyframes_length"] = _steps(keyframes)
-    for name, seconds in timed(keyframes, curves).items():
+    for name, seconds in seconds_of(keyframes, curves).items():
         table.loc[table["scheme"] == name, list(seconds)] = list(seconds.values())
     for name in ENERGIES:
         table[f"{name}_over_least"] = _over_least(table[name])
@@ -147,7 +146,7 @@ COLUMNS = [
 def _row(name: str, keyframes: Keyframes, curves: dict[str, Curve]) -> list[Row]:
     """The row of one scheme; its curve is kept for timings and figures."""
     cls = scheme(name)
-    given = {"tolerance": TOLERANCE} if "tolerance" in declared(cls._fit) else {}
+    given = among(cls, {"tolerance": TOLERANCE})
     try:
         curve, note = solved(cls, keyframes, **given)
     except ConvergenceError as error:  # in words for a table

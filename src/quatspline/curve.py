@@ -1,4 +1,7 @@
-"""Curve: the one interface of all schemes, with its claims."""
+"""Curve: the one interface of all schemes, with its claims.
+
+Longer than other modules because the interface is documented here: more than half are docstrings.
+"""
 
 from __future__ import annotations
 
@@ -14,22 +17,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from quatspline import keyframes as kf
 from quatspline import options, quaternion, solving, stencil
-from quatspline.inputs import stamps
 from quatspline.inputs.arrays import (
     FloatArray,
-    at,
     check_out,
     checked_threads,
-    float_array,
-    real_array,
 )
+from quatspline.inputs.domain import Domain
+from quatspline.kernels.operations import UNSTATED, Operations
+from quatspline.log_curve import log_curve
 from quatspline.solving import SolveReport
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
-
-EDGE = 4
-"""Samples this many ulp outside an open domain count as its end."""
 
 
 class Curve(abc.ABC):
@@ -96,8 +95,8 @@ class Curve(abc.ABC):
     """Keyframes beyond which experiments leave it out, on any machine: time or memory would not do."""
     orders: tuple[int, ...] = (0, 1, 2)
     """Orders that a call offers; a peer may lack some."""
-    operations: dict[str, float] = {}
-    """Counts that no machine changes: e.g. {"exps per sample": 3, "logs per keyframe": 1}."""
+    operations: Operations = UNSTATED
+    """Counts that no machine changes, e.g. ``Operations(exps=Per(sample=3), logs=Per(keyframe=1))``."""
     departs: ClassVar[dict[str, str]] = {}
     """Conformance checks that a scheme does not pass, a peer run as published as a rule, each with its reason."""
     rescue: ClassVar[dict[str, Any]] = {}
@@ -112,6 +111,8 @@ class Curve(abc.ABC):
         if "name" not in cls.__dict__:
             file = getattr(sys.modules.get(cls.__module__), "__file__", None) or cls.__name__
             cls.name = Path(file).stem.replace("_", "-")
+        if not isinstance(cls.operations, Operations):
+            raise TypeError(f"operations of {cls.name} is no Operations: {cls.operations!r}")
 
     def __init__(
         self,
@@ -141,12 +142,6 @@ class Curve(abc.ABC):
         curve = cls.__new__(cls)
         curve._build(keyframes, given)
         return curve
-
-    @classmethod
-    def impractical(cls, count: int) -> str | None:
-        """Why experiments leave out so many keyframes; None where they do not."""
-        limit = cls.practical_keyframes
-        return f"over budget beyond {limit} keyframes" if limit and count > limit else None
 
     # -- what a scheme writes -------------------------------------------------------------------
 
@@ -187,13 +182,17 @@ class Curve(abc.ABC):
     @property
     def domain(self) -> tuple[Any, Any]:
         """First and last time: numbers, or datetimes where keyframes have them."""
-        first, last = self.times[0], self.times[-1]
-        return (first, last) if self.times.dtype.kind in "mM" else (first.item(), last.item())
+        return self._domain.ends
 
     @property
     def keyframes(self) -> kf.Keyframes:
         """The prepared keyframes."""
         return self._keyframes
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """The scheme's own options as given, a copy."""
+        return dict(self._options)
 
     @property
     def numeric_orders(self) -> tuple[int, ...]:
@@ -240,7 +239,7 @@ class Curve(abc.ABC):
         >>> spin([[0.1, 0.2, 0.3]]).shape
         (1, 3, 4)
         """
-        samples, slack = self._taken(t)
+        samples, slack = self._domain.take(t)
         if type(order) is not int or order not in self.orders:
             order = self._checked_order(order)
         if not (isinstance(frame, str) and frame in ("body", "world")):
@@ -252,10 +251,10 @@ class Curve(abc.ABC):
             check_out(out, shape)
         direct = out is not None and out.flags.carray and not np.may_share_memory(samples, out)
         result: FloatArray = out if direct and out is not None else np.empty(shape)
-        flat, origin = samples.reshape(-1), self._origin
+        flat, origin = samples.reshape(-1), self._domain.origin
         bad = self._evaluate(flat, origin, slack, order, result.reshape(-1), threads)
         if bad >= 0:
-            self._refuse(t, bad)
+            self._domain.refuse(t, bad)
         if order and frame == "world":
             turn = np.empty(samples.shape + self._widths[0])
             self._evaluate(flat, origin, slack, 0, turn.reshape(-1), threads)
@@ -278,10 +277,8 @@ class Curve(abc.ABC):
         >>> spin.log(1).round(6)  # half the rotation vector
         array([0.      , 0.      , 1.570796])
         """
-        from quatspline.log_curve import log_curve
-
-        samples, _ = self._taken(t)
-        return log_curve(self.inner, self._keyframes, samples - self._origin, self(t))
+        samples, _ = self._domain.take(t)
+        return log_curve(self.inner, self._keyframes, samples - self._domain.origin, self(t))
 
     def rotation(self, t: ArrayLike) -> Rotation:
         """The orientations at t as a scipy ``Rotation``.
@@ -304,9 +301,12 @@ class Curve(abc.ABC):
         tracks = f", tracks {self._keyframes.track_shape}" if self._keyframes.track_shape else ""
         return f"<{type(self).__name__} {self.name!r}: {n} keyframes, {kind}, [{lo}, {hi}]{tracks}>"
 
-    def __reduce__(self) -> Any:
-        # Schemes loaded by path have no importable module: send the name (design, trap 12).
-        return _rebuild, (self.name, self._keyframes, self._options)
+    def __getstate__(self) -> Any:
+        # What it was made of: fitted constants hold addresses, which are those of this process.
+        return self._keyframes, self._options
+
+    def __setstate__(self, state: Any) -> None:
+        self._build(*state)
 
     # -- how it works ---------------------------------------------------------------------------
 
@@ -323,17 +323,16 @@ class Curve(abc.ABC):
                 f"times[{i}] to times[{i + 1}] is {float(keyframes.spacings[i])!r}, not "
                 f"{float(keyframes.spacings[0])!r}: {self.name} takes uniform times only"
             )
-        self._options = options.checked(self.name, type(self)._fit, given)
+        self._options = options.checked(type(self), given)
         self._keyframes = keyframes
-        self._plain = keyframes.plain
-        self._origin = float(keyframes.times[0]) if self._plain else 0.0
+        self._domain = Domain(keyframes.times, float(keyframes.knots[-1]), keyframes.closed)
         self._widths = tuple((*keyframes.track_shape, width) for width in (4, 3, 3))
         if self.batched or keyframes.tracks.shape[0] == 1:
             # No part is the curve itself: a cycle would keep its memory until garbage collection.
             self._parts: tuple[Curve, ...] = ()
             self._fit(keyframes, **self._options)
         else:
-            known = options.declared(type(self)._fit)
+            known = options.declared_by(type(self))
             excused = {"on_failure": "return"} if "on_failure" in known else {}
             self._parts = tuple(
                 type(self).from_keyframes(keyframes.track(k), **self._options | excused)
@@ -357,7 +356,7 @@ class Curve(abc.ABC):
         Returns the index of the first time that is not finite or outside an open domain by more than
         the slack, -1 if there is none.
         """
-        inner, flips, bad = self._wrapped(t - origin, slack)
+        inner, flips, bad = self._domain.wrap(t - origin, slack)
         if bad.any():
             return int(np.argmax(bad))
         out = out.reshape(t.size, self._keyframes.tracks.shape[0], 3 if order else 4)
@@ -370,10 +369,10 @@ class Curve(abc.ABC):
 
     def since(self, t: Any) -> FloatArray:
         """Times since the first keyframe (m,), within the domain, of samples of any kind and shape."""
-        samples, slack = self._taken(t)
-        inner, _, bad = self._wrapped(samples.reshape(-1) - self._origin, slack)
+        samples, slack = self._domain.take(t)
+        inner, _, bad = self._domain.wrap(samples.reshape(-1) - self._domain.origin, slack)
         if bad.any():
-            self._refuse(t, int(np.argmax(bad)))
+            self._domain.refuse(t, int(np.argmax(bad)))
         return inner
 
     def inner(self, t: FloatArray, order: int = 0) -> FloatArray:
@@ -382,55 +381,6 @@ class Curve(abc.ABC):
         out = np.empty((t.size, self._keyframes.tracks.shape[0], 3 if order else 4))
         self._evaluate(np.array(t, dtype=float), 0.0, np.inf, order, out.reshape(-1), 1)
         return out
-
-    def _wrapped(self, t: FloatArray, slack: float) -> tuple[FloatArray, Any, Any]:
-        """Times since the first keyframe within the domain (m,), where an odd number of periods was
-        taken off, and which are bad."""
-        period = float(self._keyframes.knots[-1])
-        if self.closed:
-            bad = ~np.isfinite(t)
-            periods = np.floor(np.where(bad, 0.0, t) / period)
-            return np.clip(t - periods * period, 0.0, period), periods % 2 == 1, bad
-        bad = ~((t >= -slack) & (t <= period + slack))
-        return np.clip(t, 0.0, period), np.zeros(t.shape, bool), bad
-
-    def _taken(self, t: Any) -> tuple[FloatArray, float]:
-        """Samples as float64 (C-contiguous, of any shape), and how far outside the domain they may lie.
-
-        They count from `_origin`: as given, or, of keyframes with other stamps than float64, since the
-        first keyframe.
-        """
-        if type(t) is float and self._plain:
-            return np.array(t), self._slack
-        given = self._given(t)
-        if self._plain:
-            samples = float_array("t", given)
-        else:
-            samples = float_array("t", stamps.elapsed(given, self._keyframes.times[0]))
-        exact = self._plain and (given.dtype.kind != "f" or given.dtype.itemsize >= 8)
-        return samples, self._slack if exact else self._slack_of(given.dtype)
-
-    def _given(self, t: Any) -> NDArray[Any]:
-        """Samples as an array of what they are."""
-        return real_array("t", t) if self._plain else stamps.stamps("t", t)
-
-    @cached_property
-    def _slack(self) -> float:
-        return self._slack_of(np.dtype(np.float64))
-
-    def _slack_of(self, kind: np.dtype[Any]) -> float:
-        """EDGE ulp of an end, in samples of a dtype."""
-        first, last = self._keyframes.times[0], self._keyframes.times[-1]
-        return EDGE * stamps.resolution(first, last, kind)
-
-    def _refuse(self, t: Any, index: int) -> None:
-        given = self._given(t)
-        where = np.unravel_index(index, given.shape) if given.shape else ()
-        label, stamp = at("t", where), given[where]
-        if not stamps.finite(stamp):
-            raise ValueError(f"{label} = {stamp}: not a finite number")
-        first, last = map(stamps.shown, self.domain)
-        raise ValueError(f"{label} = {stamps.shown(stamp)}: outside the domain [{first}, {last}]")
 
     def _checked_order(self, order: Any) -> int:
         try:
@@ -448,9 +398,3 @@ class Curve(abc.ABC):
         self.solve_report = report
         if on_failure == "raise":
             solving.require_converged(self.name, report, tracks=bool(self._keyframes.track_shape))
-
-
-def _rebuild(name: str, keyframes: kf.Keyframes, given: dict[str, Any]) -> Curve:
-    from quatspline.catalogue import scheme
-
-    return scheme(name).from_keyframes(keyframes, **given)

@@ -33,9 +33,7 @@ def log_curve(
     result = principal.reshape(*t.shape, -1, 3)
     axes = [_common_axis(track) for track in keyframes.tracks]
     if any(axis is not None for axis in axes):
-        grid = np.append(
-            keyframes.knots[:-1, None] + keyframes.spacings[:, None] * STEPS, keyframes.knots[-1]
-        )
+        grid = np.append(keyframes.inside(STEPS), keyframes.knots[-1])
         along = evaluate(grid)
     for k, axis in enumerate(axes):
         if axis is not None:

@@ -10,12 +10,24 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from types import UnionType
-from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
+from typing import (
+    TYPE_CHECKING,
+    Annotated,
+    Any,
+    Literal,
+    Union,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from quatspline.inputs.arrays import FloatArray, real_array, refuse_infinite
+
+if TYPE_CHECKING:
+    from quatspline.curve import Curve
 
 
 @dataclass(frozen=True)
@@ -90,9 +102,13 @@ def nearest(name: str, known: Iterable[str]) -> str:
     return f"did you mean {close[0]!r}?" if close else f"known: {', '.join(known) or 'none'}"
 
 
+def declared_by(scheme: type[Curve]) -> dict[str, inspect.Parameter]:
+    """The options of a scheme by name, which its `_fit` declares, with their annotations resolved."""
+    return _declared(scheme._fit)
+
+
 @cache
-def declared(fit: Callable[..., Any]) -> dict[str, inspect.Parameter]:
-    """The options that a `_fit` declares, with their annotations resolved."""
+def _declared(fit: Callable[..., Any]) -> dict[str, inspect.Parameter]:
     hints = get_type_hints(fit, include_extras=True)
     return {
         p.name: p.replace(annotation=hints.get(p.name, Any))
@@ -101,12 +117,18 @@ def declared(fit: Callable[..., Any]) -> dict[str, inspect.Parameter]:
     }
 
 
-def checked(scheme: str, fit: Callable[..., Any], given: Mapping[str, Any]) -> dict[str, Any]:
+def among(scheme: type[Curve], wanted: Mapping[str, Any]) -> dict[str, Any]:
+    """Those of the wanted options that a scheme has."""
+    known = declared_by(scheme)
+    return {name: value for name, value in wanted.items() if name in known}
+
+
+def checked(scheme: type[Curve], given: Mapping[str, Any]) -> dict[str, Any]:
     """The given options, refused with a ValueError where a name or a value is not declared."""
-    known = declared(fit)
+    known = declared_by(scheme)
     for name, value in given.items():
         if name not in known:
-            raise ValueError(f"{scheme} has no option {name!r}: {nearest(name, known)}")
+            raise ValueError(f"{scheme.name} has no option {name!r}: {nearest(name, known)}")
         _check(name, value, known[name].annotation)
     return dict(given)
 

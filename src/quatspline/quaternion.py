@@ -14,14 +14,24 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from quatspline.inputs.arrays import FloatArray
-from quatspline.kernels import scalars as p
-from quatspline.kernels.jit import compiled
-
-IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
+from quatspline.kernels import jacobians, values
+from quatspline.kernels.jit import compiled, inlined
+from quatspline.kernels.scalars import TINY
+from quatspline.kernels.values import (
+    Quat,
+    Vec,
+    cross,
+    norm,
+    pure,
+    put_quat,
+    put_vec,
+    quat_at,
+    vec,
+    vec_at,
+)
 
 ANTIPODAL = 4 * float(np.finfo(float).eps)
 """Quaternions whose sum is shorter than this have no shortest arc between them."""
@@ -142,7 +152,7 @@ def rotate(q: ArrayLike, v: ArrayLike) -> FloatArray:
     return _apply(_rotate, (q, 4), (v, 3), width=3)
 
 
-def between(u: ArrayLike, v: ArrayLike) -> FloatArray:
+def shortest_rotation(u: ArrayLike, v: ArrayLike) -> FloatArray:
     """The least rotation (..., 4) that turns direction u (..., 3) into direction v (..., 3).
 
     Stable for nearly parallel directions.  Opposite directions turn half a turn about an axis
@@ -161,7 +171,7 @@ def between(u: ArrayLike, v: ArrayLike) -> FloatArray:
             raise ValueError(f"{name} has a direction of length zero")
         vector = vector / largest  # squares of very small or large numbers leave float64
         directions.append(vector / np.linalg.norm(vector, axis=-1, keepdims=True))
-    return _apply(_between, (directions[0], 3), (directions[1], 3), width=4)
+    return _apply(_shortest_rotation, (directions[0], 3), (directions[1], 3), width=4)
 
 
 def right_jacobian(r: ArrayLike) -> FloatArray:
@@ -223,77 +233,66 @@ def _columns(loop: Any, r: ArrayLike) -> FloatArray:
 @compiled
 def _mul(a, b, out):
     for i in range(out.shape[0]):
-        out[i, 0], out[i, 1], out[i, 2], out[i, 3] = p.mul(
-            a[i, 0], a[i, 1], a[i, 2], a[i, 3], b[i, 0], b[i, 1], b[i, 2], b[i, 3]
-        )
+        put_quat(out[i], 0, quat_at(a[i], 0) * quat_at(b[i], 0))
 
 
 @compiled
 def _exp(v, out):
     for i in range(out.shape[0]):
-        out[i, 0], out[i, 1], out[i, 2], out[i, 3] = p.exp(v[i, 0], v[i, 1], v[i, 2])
+        put_quat(out[i], 0, values.exp(vec_at(v[i], 0)))
 
 
 @compiled
 def _log(q, out):
     for i in range(out.shape[0]):
-        out[i, 0], out[i, 1], out[i, 2] = p.log(q[i, 0], q[i, 1], q[i, 2], q[i, 3])
+        put_vec(out[i], 0, values.log(quat_at(q[i], 0)))
 
 
 @compiled
 def _distance(a, b, out):
     for i in range(out.shape[0]):
-        w, x, y, z = p.between(
-            a[i, 0], a[i, 1], a[i, 2], a[i, 3], b[i, 0], b[i, 1], b[i, 2], b[i, 3]
-        )
-        out[i, 0] = 2.0 * math.atan2(math.sqrt(x * x + y * y + z * z), abs(w))
+        q = ~quat_at(a[i], 0) * quat_at(b[i], 0)
+        out[i, 0] = 2.0 * math.atan2(norm(vec(q)), abs(q.w))
 
 
 @compiled
 def _rotate(q, v, out):
     for i in range(out.shape[0]):
-        out[i, 0], out[i, 1], out[i, 2] = p.rotate(
-            q[i, 0], q[i, 1], q[i, 2], q[i, 3], v[i, 0], v[i, 1], v[i, 2]
-        )
+        put_vec(out[i], 0, values.rotate(quat_at(q[i], 0), vec_at(v[i], 0)))
 
 
 @compiled
-def _between(u, v, out):
+def _shortest_rotation(u, v, out):
     for i in range(out.shape[0]):
-        x, y, z = u[i, 0], u[i, 1], u[i, 2]
-        # half-angle form: |u + v| = 2 cos(angle/2), |u - v| = 2 sin(angle/2)
-        sx, sy, sz = x + v[i, 0], y + v[i, 1], z + v[i, 2]
-        dx, dy, dz = v[i, 0] - x, v[i, 1] - y, v[i, 2] - z
-        c = 0.5 * math.sqrt(sx * sx + sy * sy + sz * sz)
-        s = 0.5 * math.sqrt(dx * dx + dy * dy + dz * dz)
-        ax, ay, az = p.cross(sx, sy, sz, dx, dy, dz)
-        length = math.sqrt(ax * ax + ay * ay + az * az)
-        if length < p.TINY:
+        a, b = vec_at(u[i], 0), vec_at(v[i], 0)
+        # half-angle form: |a + b| = 2 cos(angle/2), |b - a| = 2 sin(angle/2)
+        c, s = 0.5 * norm(a + b), 0.5 * norm(b - a)
+        axis = cross(a + b, b - a)
+        if norm(axis) < TINY:
             if s < 0.5:
-                out[i, 0], out[i, 1], out[i, 2], out[i, 3] = 1.0, 0.0, 0.0, 0.0
+                put_quat(out[i], 0, Quat(1.0, 0.0, 0.0, 0.0))
                 continue
-            least = min(abs(x), abs(y), abs(z))
-            e = (1.0, 0.0, 0.0)
-            if abs(x) > least:
-                e = (0.0, 1.0, 0.0) if abs(y) == least else (0.0, 0.0, 1.0)
-            ax, ay, az = p.cross(x, y, z, e[0], e[1], e[2])
-            length = math.sqrt(ax * ax + ay * ay + az * az)
-        norm = math.sqrt(c * c + s * s)
-        k = s / (norm * length)
-        out[i, 0], out[i, 1], out[i, 2], out[i, 3] = c / norm, k * ax, k * ay, k * az
+            axis = cross(a, _least(a))
+        turn = pure((s / norm(axis)) * axis)
+        put_quat(out[i], 0, (1.0 / math.sqrt(c * c + s * s)) * Quat(c, turn.x, turn.y, turn.z))
+
+
+@inlined
+def _least(a):
+    """The coordinate axis on which a vector has least."""
+    x, y, z = abs(a.x), abs(a.y), abs(a.z)
+    if x <= min(y, z):
+        return Vec(1.0, 0.0, 0.0)
+    return Vec(0.0, 1.0, 0.0) if y <= z else Vec(0.0, 0.0, 1.0)
 
 
 @compiled
 def _right_jacobian(r, v, out):
     for i in range(out.shape[0]):
-        out[i, 0], out[i, 1], out[i, 2] = p.right_jacobian(
-            r[i, 0], r[i, 1], r[i, 2], v[i, 0], v[i, 1], v[i, 2]
-        )
+        put_vec(out[i], 0, jacobians.right_jacobian(0.5 * vec_at(r[i], 0), vec_at(v[i], 0)))
 
 
 @compiled
 def _inverse_right_jacobian(r, v, out):
     for i in range(out.shape[0]):
-        out[i, 0], out[i, 1], out[i, 2] = p.inverse_right_jacobian(
-            r[i, 0], r[i, 1], r[i, 2], v[i, 0], v[i, 1], v[i, 2]
-        )
+        put_vec(out[i], 0, jacobians.inverse_right_jacobian(0.5 * vec_at(r[i], 0), vec_at(v[i], 0)))

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import threading
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
 from typing import Any
@@ -18,11 +17,12 @@ from typing import Any
 import numpy as np
 
 from quatspline.curve import Curve
+from quatspline.inputs.arrays import BoolArray, FloatArray
 from quatspline.kernels.driver import described, fit_tracks, sample
-from quatspline.kernels.jit import CHANGE, CONSTANTS, ITERATIONS, RESIDUAL, RESULT, Kernel
+from quatspline.kernels.family import Family
+from quatspline.kernels.jit import CHANGE, ITERATIONS, RESIDUAL, UNREPORTED, Kernel
 from quatspline.kernels.misses import largest_misses
 from quatspline.kernels.scalars import NEAR
-from quatspline.quaternion import BoolArray, FloatArray
 from quatspline.solving import WRONG_FIXED_POINT, SolveReport
 
 CHUNK = 4096
@@ -32,28 +32,6 @@ LAZY = 4 * CHUNK
 
 THREAD_MINIMUM = 20_000
 """Samples that make a further thread worth its start."""
-
-
-@dataclass(frozen=True)
-class Family:
-    """The sample kernels that evaluate one layout of constants.
-
-    Attributes
-    ----------
-    constants : numbers a segment
-    near : kernels for orders 0, 1, 2 where every half angle stays within `primitives.NEAR`
-    far : kernels for any angle
-    """
-
-    constants: int
-    near: tuple[Kernel, Kernel, Kernel]
-    far: tuple[Kernel, Kernel, Kernel]
-
-    def __post_init__(self) -> None:
-        if self.constants > RESULT - CONSTANTS:  # kernels would write into the result's rows
-            raise ValueError(
-                f"{self.constants} constants per segment: a sheet has {RESULT - CONSTANTS} rows for them"
-            )
 
 
 class SegmentCurve(Curve):
@@ -107,6 +85,8 @@ class SegmentCurve(Curve):
         reach: float = fit_tracks(
             self.fit_kernel.address, tracks, h, closed, signs, self.parameters, segments, report
         )
+        if reach == UNREPORTED:
+            raise TypeError(f"{self.name}: its fit kernel does not write report[REACH]")
         return reach
 
     def _fit_window(self, low: float, high: float) -> None:

@@ -9,11 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from quatspline import quaternion
-from quatspline.quaternion import FloatArray, IntArray
+from quatspline.inputs.arrays import FloatArray, IntArray
+from quatspline.keyframes import segment_of
+
+if TYPE_CHECKING:
+    from quatspline.curve import Curve
 
 POINTS = 9
 STEP = 6e-3
@@ -45,7 +50,7 @@ def rates(
     orientation: Callable[[FloatArray], FloatArray], t: FloatArray, knots: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Body angular velocity and acceleration (m, 3) at t (m,) of a curve smooth between knots."""
-    segment = np.clip(np.searchsorted(knots, t, side="right") - 1, 0, len(knots) - 2)
+    segment = segment_of(knots, t)
     lo, hi = knots[segment], knots[segment + 1]
     step = np.minimum(STEP * (hi - lo), TURN / _speed(orientation, segment, knots))
     reach = POINTS // 2
@@ -61,6 +66,11 @@ def rates(
     velocity = 2.0 * np.einsum("mj,mji->mi", first[shift + reach], x) / step[:, None]
     acceleration = 2.0 * np.einsum("mj,mji->mi", second[shift + reach], x) / step[:, None] ** 2
     return velocity, acceleration
+
+
+def rates_of(curve: Curve, t: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The same of a single-track curve at times since its first keyframe, whatever rates it reports."""
+    return rates(lambda s: curve.inner(s)[:, 0], t, curve.keyframes.knots)
 
 
 def _speed(

@@ -2,6 +2,7 @@
 
 import json
 import os
+import pickle
 import shutil
 import subprocess
 import sys
@@ -11,6 +12,7 @@ import numpy as np
 import pytest
 
 import quatspline as qs
+from processes import environment, python
 from quatspline import catalogue
 from tools import new_scheme
 from walks import walk
@@ -48,21 +50,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     place.mkdir()
     monkeypatch.setenv(catalogue.FOLDERS, str(place))
     return place
-
-
-def python(code: str, path: list[Path] | None = None, **environment: str) -> str:
-    """What a fresh interpreter prints; warnings are errors there too."""
-    package = str(catalogue.PACKAGE.parent)
-    paths = os.pathsep.join([package, *map(str, path or [])])
-    done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", code],
-        capture_output=True,
-        text=True,
-        env={**os.environ, "PYTHONPATH": paths, **environment},
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout.strip()
 
 
 # -- names --------------------------------------------------------------------------------------
@@ -116,18 +103,8 @@ def test_a_file_is_a_scheme(folder: Path) -> None:
 
 def test_a_pickle_finds_a_file_by_name(folder: Path) -> None:
     (folder / "half_pickled.py").write_text(HALF.format(name="Half"))
-    code = "import sys, pickle; sys.stdout.write(str(pickle.load(sys.stdin.buffer)(0.5).shape))"
-    import pickle
-
     data = pickle.dumps(qs.build("half-pickled", None, walk(4, 30.0)))
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        input=data,
-        capture_output=True,
-        env={**os.environ, "PYTHONPATH": str(catalogue.PACKAGE.parent)},
-        check=True,
-    )
-    assert done.stdout == b"(4,)"
+    assert python(f"import pickle; print(pickle.loads({data!r})(0.5).shape)") == "(4,)"
 
 
 @pytest.mark.parametrize(
@@ -222,7 +199,7 @@ copy = pickle.loads(pickle.dumps(curve))
 print(curve.name, curve(0.5).tolist(), copy(1.0).tolist(), qs.scheme("hold-example").__module__)
 """
     wanted = "hold-example [1.0, 0.0, 0.0, 0.0] [0.8, 0.6, 0.0, 0.0] quatspline_example"
-    assert python(code, [installed]) == wanted
+    assert python(code, installed) == wanted
 
 
 def test_a_broken_package_does_not_take_others_down(installed: Path) -> None:
@@ -232,7 +209,7 @@ import quatspline as qs
 from quatspline.catalogue import found
 print(found()["hold-example"].problem, "slerp" in qs.schemes())
 """
-    assert python(code, [installed]) == "OSError: no library True"
+    assert python(code, installed) == "OSError: no library True"
 
 
 def test_an_entry_point_that_is_no_scheme(installed: Path) -> None:
@@ -242,7 +219,7 @@ import quatspline as qs
 from quatspline.catalogue import found
 print(found()["hold-example"].problem, "slerp" in qs.schemes())
 """
-    assert python(code, [installed]) == "TypeError: no subclass of Curve: 3 True"
+    assert python(code, installed) == "TypeError: no subclass of Curve: 3 True"
 
 
 # -- imports ------------------------------------------------------------------------------------
@@ -316,7 +293,7 @@ def test_scaffold_passes_its_own_checks(folder: Path) -> None:
         [sys.executable, "-m", "pytest", *options, *tests, "-k", "my-checked"],
         capture_output=True,
         text=True,
-        env={**os.environ, "PYTHONPATH": str(catalogue.PACKAGE.parent)},
+        env=environment(),
         cwd=Path(__file__).parents[2],
         check=False,
     )

@@ -14,19 +14,19 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import numba
 import pytest
 from numba import config
 
 import quatspline as qs
+from processes import STUCK, environment, python
 from quatspline import catalogue
 from quatspline.kernels import jit
-from quatspline.peers.wrapping import quiet
+from quatspline.system.quiet import quiet
 
 TRIAL = Path(__file__).parents[1] / "robustness" / "threads.py"
 LATE = 1.0
 """Seconds given to a thread to do what it must not do."""
-STUCK = 120
-"""Seconds after which a process counts as stuck."""
 
 SCHEME = """
 import numpy as np
@@ -82,30 +82,14 @@ def started(call: Callable[[], Any]) -> tuple[threading.Thread, list[Any]]:
     return thread, results
 
 
-def python(folder: Path, code: str) -> str:
-    """What a fresh interpreter prints that can import what lies beside a folder of schemes."""
-    paths = os.pathsep.join([str(catalogue.PACKAGE.parent), str(folder.parent)])
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        capture_output=True,
-        text=True,
-        env={**os.environ, "PYTHONPATH": paths},
-        timeout=STUCK,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout.strip()
-
-
 # -- discovery ----------------------------------------------------------------------------------
 
 
 def test_eight_threads_at_once_list_every_scheme() -> None:
     """A small part of the trial; the whole of it is run by hand."""
     command = [sys.executable, str(TRIAL), "--processes", "2", "--threads", "8", "--cold", "0"]
-    paths = {**os.environ, "PYTHONPATH": str(catalogue.PACKAGE.parent)}
     done = subprocess.run(
-        command, capture_output=True, text=True, env=paths, timeout=5 * STUCK, check=False
+        command, capture_output=True, text=True, env=environment(), timeout=5 * STUCK, check=False
     )
     assert done.returncode == 0, done.stdout + done.stderr
     assert "2 of 2 processes without a fault" in done.stdout
@@ -178,7 +162,7 @@ def test_what_fails_for_want_of_a_module_under_import_is_not_kept(
         needs = f"try:\n    {needs}except ImportError as e:\n    raise OSError('no lab') from e\n"
     (folder / "held.py").write_text(needs + SCHEME)
     code = "import lab, quatspline as qs\nprint('held' in lab.BEFORE, 'held' in qs.schemes())"
-    assert python(folder, code) == "False True"
+    assert python(code, folder.parent) == "False True"
 
 
 def test_two_threads_that_need_each_other_s_imports_end(folder: Path) -> None:
@@ -199,28 +183,34 @@ listing.start()
 importing.join(60), listing.join(60)
 print(importing.is_alive(), listing.is_alive(), "held" in qs.schemes(), "slerp" in qs.schemes())
 """
-    assert python(folder, code) == "False False True True"
+    assert python(code, folder.parent) == "False False True True"
 
 
 # -- compilation and peers ----------------------------------------------------------------------
 
 
-def test_two_files_decorated_at_once_keep_their_cache_folders(tmp_path: Path) -> None:
+def test_two_files_decorated_at_once_keep_their_cache_folders(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     before = config.CACHE_DIR
     inside, left = [threading.Event(), threading.Event()], threading.Event()
 
+    def decorating(**settings: Any) -> Callable[..., bool]:
+        def decorate(function: Callable[[], Any]) -> bool:
+            inside[function()[0]].set()
+            function()[1]()
+            return jit.cache_folder(Path(function.__code__.co_filename)) == config.CACHE_DIR
+
+        return decorate
+
     def decorated(place: int, meet: Callable[[], Any]) -> bool:
         path = tmp_path / f"kernels_{place}.py"
-        path.write_text(f"def f():\n    return {place}\n")
-        names: dict[str, Any] = {}
+        path.write_text(f"def f():\n    return {place}, meet\n")
+        names: dict[str, Any] = {"meet": meet}
         exec(compile(path.read_text(), str(path), "exec"), names)
+        return jit.compiled(names["f"])
 
-        def decorate() -> bool:
-            inside[place].set()
-            meet()
-            return jit.cache_folder(path) == config.CACHE_DIR
-
-        return jit._cached(names["f"], decorate)
+    monkeypatch.setattr(numba, "njit", decorating)
 
     def first() -> bool:
         right = decorated(0, lambda: inside[1].wait(LATE))  # the other one must not come in
@@ -300,8 +290,8 @@ while not (here / "inside").exists() and time.monotonic() < until:
 {build}
 print("built")
 """
-    other, results = started(lambda: python(folder, first))
-    assert python(folder, second) == "built"
+    other, results = started(lambda: python(first))
+    assert python(second) == "built"
     other.join(STUCK)
     assert results == [""]
 
@@ -342,7 +332,7 @@ thread.join(60)
             "lock.acquire()",
         ),
         (
-            "from quatspline.peers.wrapping import quiet\n"
+            "from quatspline.system.quiet import quiet\n"
             "def peer():\n    with quiet():\n        gate.entered.set(); gate.go.wait(60)\n"
             "thread = threading.Thread(target=peer)\n"
             "thread.start(); assert gate.entered.wait(60)",
@@ -357,14 +347,16 @@ def test_a_forked_child_waits_for_no_thread_it_lacks(
     (folder.parent / "gate.py").write_text(GATE)
     held = "import gate\ngate.entered.set()\nassert gate.go.wait(60)\n"
     (folder / "held.py").write_text(held + SCHEME)
-    assert python(folder, FORKED.format(prepared=prepared, asked=asked)) == "0"
+    assert python(FORKED.format(prepared=prepared, asked=asked), folder.parent) == "0"
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="nothing forks here")
 def test_a_fork_inside_an_import_does_not_wait_for_itself(folder: Path) -> None:
-    forks = "import os, signal, quatspline as qs\nchild = os.fork()\n"
+    forks = "import os, signal, warnings, quatspline as qs\n"
+    forks += "warnings.simplefilter('ignore')  # newer Pythons warn of forks beside threads\n"
+    forks += "child = os.fork()\n"
     forks += f"if not child: signal.alarm({STUCK // 2}); qs.schemes(); os._exit(0)\n"
     forks += "STATUS = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])\n"
     (folder / "held.py").write_text(forks + SCHEME)
     code = "import sys, quatspline as qs\nprint(sys.modules[qs.scheme('held').__module__].STATUS)"
-    assert python(folder, code) == "0"
+    assert python(code) == "0"

@@ -10,7 +10,7 @@ import numpy as np
 
 import quatspline as qs
 from quatspline import quaternion
-from quatspline.options import declared
+from quatspline.options import declared_by
 from quatspline.quaternion import FloatArray
 
 Rng = np.random.Generator
@@ -172,7 +172,7 @@ def _options(rng: Rng, cls: type[qs.Curve], n: int, closed: bool) -> dict[str, A
     options: dict[str, Any] = {}
     if rng.random() < 0.5:
         return options
-    for name, parameter in declared(cls._fit).items():
+    for name, parameter in declared_by(cls).items():
         kind = parameter.annotation
         if name == "on_failure" or rng.random() < 0.5:
             continue

@@ -78,9 +78,7 @@ def _tolerance(curve: qs.Curve) -> float:
 def _samples(curve: qs.Curve) -> Any:
     """Times inside every segment, in the middle, next to its ends and at random."""
     rng = np.random.default_rng(7)
-    knots = curve.keyframes.knots
-    u = np.concatenate([[0.5, 1e-9, 1e-3, 1.0 - 1e-9], rng.random(4)])
-    inner = (knots[:-1, None] + np.diff(knots)[:, None] * u).ravel()
+    inner = curve.keyframes.inside([0.5, 1e-9, 1e-3, 1.0 - 1e-9, *rng.random(4)])
     if curve.times.dtype == np.int64:
         return curve.times[0] + np.round(inner).astype(np.int64)
     first, last = curve.domain

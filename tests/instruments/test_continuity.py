@@ -10,7 +10,15 @@ from quatspline import quaternion
 from quatspline.catalogue import load, scheme, schemes, shipped
 from quatspline.claims.own import own_rates
 from quatspline.curve import Curve
-from quatspline.instruments.accuracy import errors, knots, reach, with_reach, with_slopes
+from quatspline.instruments.accuracy import (
+    ERRORS,
+    errors,
+    knots,
+    measured_order,
+    reach,
+    with_reach,
+    with_slopes,
+)
 from quatspline.instruments.continuity import jumps, measured_continuity, speeds
 from quatspline.instruments.fairness import fairness
 from quatspline.instruments.trials import builder
@@ -120,7 +128,7 @@ def test_rates_that_a_library_reports_do_not_decide():
 
 def test_own_rates_are_held_against_the_curve():
     def fast(self, t):
-        return 1.02 * Turn._velocity(self, t)
+        return 1.02 * self.omega(t)
 
     rows = {row["quantity"]: row for row in own_rates(joined(0.0, 2, _velocity=fast))}
     assert rows["omega"]["relative"] == pytest.approx(0.02, rel=1e-6)
@@ -189,7 +197,7 @@ def test_what_is_known_of_schemes(name, case, k):
     if name not in schemes():
         pytest.skip(f"{name}: its library is not installed")
     module = load(shipped("experiments") / "continuity.py", "experiment")
-    curve = builder(name)(*module._keyframes(Run(quick=True), case))
+    curve = builder(name)(*module.keyframes_of(Run(quick=True), case))
     assert measured_continuity(jumps(curve)) == k
     stops = name == "interpolatepy-squad-c2"
     assert (speeds(curve)["least_key_speed"] < 1e-6) == stops
@@ -262,6 +270,24 @@ def test_knots_span_the_motion(kind):
     assert t[0] == 0.0
     assert t[-1] == pytest.approx(10.0)
     assert (np.diff(t) > 0).all()
+
+
+def test_a_measured_order_is_the_power_of_the_spacing():
+    h = np.array([1.0, 0.5, 0.25])
+    assert measured_order(h, 7.0 * h**3) == pytest.approx(3.0, abs=1e-12)
+    assert measured_order(h[:2], [1.0, 1.0]) == pytest.approx(0.0, abs=1e-12)
+    for bad in (0.0, np.nan, np.inf):
+        assert np.isnan(measured_order(h, [1.0, bad, 0.1]))
+
+
+def test_slopes_skip_levels_that_failed():
+    h = 1.0 / np.arange(4.0, 12.0)
+    error = 2.0 * h**4
+    error[3] = np.nan
+    rows = {"scheme": "s", "keyframes": 1.0 / h + 1.0, **dict.fromkeys(ERRORS, error)}
+    slopes = with_slopes(pd.DataFrame(rows), ["scheme"])["slope"]
+    assert np.flatnonzero(slopes.isna()).tolist() == [0, 3, 4]
+    assert slopes.dropna().to_numpy() == pytest.approx(np.full(5, 4.0), abs=1e-12)
 
 
 def test_slopes_are_orders():

@@ -63,7 +63,7 @@ class _Hole(Toy):
     """Slerp, but not a number in the last segment; or of norm 2; or off by 0.1 rad."""
 
     def _orientation(self, t):
-        segment, u = self.located(t)
+        segment, u = self.keyframes.locate(t)
         return self.spoilt(self.slerped(segment, u), segment)
 
 
@@ -89,7 +89,7 @@ def test_faults_are_told_apart(monkeypatch, fault):
 def test_rates_that_are_not_numbers_count(monkeypatch):
     class Rates(Toy):
         def _orientation(self, t):
-            return self.slerped(*self.located(t))
+            return self.slerped(*self.keyframes.locate(t))
 
         def _acceleration(self, t):
             return np.full((len(t), 3), np.nan)
@@ -134,7 +134,7 @@ class _Bent(Toy):
     segment = 0
 
     def _orientation(self, t):
-        segment, u = self.located(t)
+        segment, u = self.keyframes.locate(t)
         bump = np.where(segment == self.segment, 0.04 * u * (1.0 - u), 0.0)
         return self.slerped(segment, u + bump)
 
@@ -161,7 +161,9 @@ def test_a_deviation_counts_where_none_is_claimed(monkeypatch, claim, segment, r
 def test_a_missed_keyframe_is_a_fault_unless_none_is_met(monkeypatch):
     class Off(Toy):
         def _orientation(self, t):
-            return quaternion.mul(self.slerped(*self.located(t)), quaternion.exp([0.01, 0.0, 0.0]))
+            return quaternion.mul(
+                self.slerped(*self.keyframes.locate(t)), quaternion.exp([0.01, 0.0, 0.0])
+            )
 
     for interpolates, result in ((True, "wrong"), (False, "as claimed")):
         cls = type("_", (Off,), {"interpolates": interpolates, "name": "toy"})

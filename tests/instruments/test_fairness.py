@@ -264,7 +264,7 @@ def test_a_leap_inside_a_segment_is_searched_on_every_set():
         {"scheme": name, "data": "170 degrees", "set": index, **row}
         for index, (t, q) in enumerate(step_sets(170, 10))
         for name in ("min-torque", "spherical-average")
-        for row in experiment.attempted(lambda n=name, a=t, b=q: experiment._measured(n, a, b))
+        for row in experiment.attempted(lambda n=name, a=t, b=q: experiment.measures(n, a, b))
     ]
     table = experiment.gather(Run(quick=False), pd.DataFrame(rows)).set_index("scheme")
     row = table.loc["spherical-average"]

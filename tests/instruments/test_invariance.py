@@ -33,14 +33,16 @@ class _Tilted(Toy):
     """Turned by a constant rotation about a fixed axis of the world."""
 
     def _orientation(self, t):
-        return quaternion.mul(quaternion.exp([0.0, 0.0, TILT]), self.slerped(*self.located(t)))
+        return quaternion.mul(
+            quaternion.exp([0.0, 0.0, TILT]), self.slerped(*self.keyframes.locate(t))
+        )
 
 
 class _Late(Toy):
     """Starts every segment at rest."""
 
     def _orientation(self, t):
-        segment, u = self.located(t)
+        segment, u = self.keyframes.locate(t)
         return self.slerped(segment, u**2)
 
 
@@ -48,7 +50,7 @@ class _Slow(Toy):
     """Waits at a keyframe after one unit of time."""
 
     def _orientation(self, t):
-        segment, _ = self.located(t)
+        segment, _ = self.keyframes.locate(t)
         since = t - self.keyframes.knots[segment]
         return self.slerped(segment, np.minimum(since, 1.0))
 
@@ -102,7 +104,7 @@ def test_a_fixed_chart_folds_in_the_shell():
 
     class Chart(Toy):
         def _orientation(self, t):
-            segment, u = self.located(t)
+            segment, u = self.keyframes.locate(t)
             logs = quaternion.log(self.keyframes.quaternions)
             return quaternion.exp(
                 (1.0 - u)[:, None] * logs[segment] + u[:, None] * logs[segment + 1]

@@ -21,7 +21,7 @@ class _Chart(Toy):
     """Half rotation vectors, combined linearly: on equal keyframes responses are the weights."""
 
     def _orientation(self, t):
-        segment, u = self.located(t)
+        segment, u = self.keyframes.locate(t)
         weights = self.weights(segment[:, None] - np.arange(COUNT), u[:, None])
         return quaternion.exp(weights @ quaternion.log(self.keyframes.quaternions))
 

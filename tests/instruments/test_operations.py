@@ -14,7 +14,8 @@ import pytest
 
 from quatspline.catalogue import load, scheme, shipped
 from quatspline.curve import Curve
-from quatspline.options import declared
+from quatspline.kernels.operations import Operations, Per
+from quatspline.options import among
 from quatspline.timing.operations import executed, iterations, per_keyframe, per_sample
 from quatspline.trajectories.paper import CASES, SOLVE
 
@@ -24,14 +25,13 @@ table1 = load(shipped("experiments") / "table1.py", "experiment")
 
 
 def solved(name: str, case: str, stop: str | None = None) -> Curve:
-    known = declared(scheme(name)._fit)
-    options = SOLVE | ({"stop": stop} if stop else {})
-    given = {key: value for key, value in options.items() if key in known}
+    wanted = SOLVE | ({"stop": stop} if stop else {})
+    given = among(scheme(name), wanted)
     return scheme(name).from_keyframes(CASES[case].keyframes(), **given)
 
 
 def counts(case: str, frames: int, protocol: str, name: str) -> dict[str, Any]:
-    return table1._counts(CASES[case], frames, protocol, name)
+    return table1.counted(CASES[case], frames, protocol, name)
 
 
 def test_nielson_on_the_open_key_solves_for_three_of_five_keyframes() -> None:
@@ -105,11 +105,33 @@ def test_many_keyframes_take_the_same_each() -> None:
     assert executed(curve, 0).total["slerps"] == 6 * per_keyframe(curve)["slerps"]
 
 
-def test_an_unknown_unit_is_named() -> None:
-    curve = solved("quartic", "key")
-    curve.operations = {"exps per fortnight": 1}
-    with pytest.raises(ValueError, match="operations of quartic: 'fortnight' is none of keyframe"):
-        executed(curve, 1)
+def test_every_unit_is_counted_as_often_as_there_are_some() -> None:
+    """Of the closed teapot's 6 keyframes and of the open key's 5, in two solves and three samples."""
+    each = Per(sample=1, keyframe=10, inner_keyframe=100, segment=1e3, knot=1e4, solve=1e5)
+    for case, inner, segments in (("teapot", 6, 6), ("key", 3, 4)):
+        curve = solved("nielson", case)
+        keys, updates = curve.keyframes.count, iterations(curve)
+        set_up = 10 * keys + 100 * inner + 1e3 * segments + 1e4 * (segments + 1) + 1e5
+        curve.operations = Operations(exps=each, iteration=Operations(exps=Per(keyframe=1)))
+        counts = executed(curve, samples=3, solves=2)
+        assert counts.updates["exps"] == 3 + 2 * updates * keys
+        assert counts.rest["exps"] == 2 * set_up
+        assert per_keyframe(curve)["exps"] == 10 + 100 + 1e3 + 1e4 + updates
+
+
+def test_counts_in_english_are_refused() -> None:
+    with pytest.raises(
+        TypeError, match=r"operations of .* is no Operations: {'exps per sample': 3}"
+    ):
+
+        class Told(Curve):
+            operations = {"exps per sample": 3}  # type: ignore[assignment]
+
+
+def test_an_iteration_has_no_iteration() -> None:
+    once = Operations(exps=Per(keyframe=1))
+    with pytest.raises(ValueError, match="an iteration has no iteration of its own"):
+        Operations(iteration=Operations(iteration=once))
 
 
 def test_the_table_prints_them_apart() -> None:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from keyfiles import put, refusal
 
 from quatspline.motion.files import KeyframeFileError, Motion, read, write, writing
 from quatspline.system.atomic import replacing
@@ -15,21 +16,6 @@ from quatspline.system.atomic import replacing
 TIMES = np.array([0.0, 0.1, 1.0 / 3.0, 1305031102.175800085])
 QUATERNIONS = np.array([[1, 0, 0, 0], [0.8, 0.6, 0, 0], [0.6, 0, -0.8, 0], [0.5, 0.5, 0.5, -0.5]])
 POSITIONS = np.array([[0, 0, 0], [1, 2, 3], [0.1, 0.2, 0.3], [-1e-17, 5, 1e300]])
-
-
-def put(folder: Path, name: str, content: str) -> Path:
-    path = folder / name
-    path.write_text(content, encoding="utf-8")
-    return path
-
-
-def refusal(path: Path) -> str:
-    with pytest.raises(KeyframeFileError) as caught:
-        read(path)
-    message = str(caught.value)
-    assert "\n" not in message
-    assert message.startswith(str(path))
-    return message.removeprefix(str(path))
 
 
 # -- what is read -------------------------------------------------------------------------------

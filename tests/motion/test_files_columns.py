@@ -6,8 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from keyfiles import put, refusal
 
-from quatspline.motion.files import KeyframeFileError, Motion, read
+from quatspline.motion.files import Motion, read
 
 ROWS = np.array([[0.0, 1, 2, 3, 0.8, 0.6, 0, 0], [1.0, 4, 5, 6, 0.36, 0.48, 0.64, 0.48]])
 """Times, positions, w, x, y, z: no two columns alike, so that none can be swapped unseen."""
@@ -23,10 +24,8 @@ def table(order: str, separator: str = ",", comma: bool = False) -> str:
     return text.replace(".", ",") if comma else text
 
 
-def put(folder: Path, text: str, name: str = "k.csv") -> Motion:
-    path = folder / name
-    path.write_text(text, encoding="utf-8")
-    return read(path)
+def taken(folder: Path, text: str, name: str = "k.csv") -> Motion:
+    return read(put(folder, name, text))
 
 
 def check(motion: Motion, positions: bool) -> None:
@@ -38,13 +37,8 @@ def check(motion: Motion, positions: bool) -> None:
         assert motion.positions is None
 
 
-def refusal(folder: Path, text: str, name: str = "k.csv") -> str:
-    with pytest.raises(KeyframeFileError) as caught:
-        put(folder, text, name)
-    message = str(caught.value)
-    assert "\n" not in message
-    assert message.startswith(str(folder / name))
-    return message.removeprefix(str(folder / name))
+def refused(folder: Path, text: str, name: str = "k.csv") -> str:
+    return refusal(put(folder, name, text))
 
 
 # -- spellings ----------------------------------------------------------------------------------
@@ -91,7 +85,7 @@ SPELLINGS = [
 def test_columns_are_found_by_name(
     tmp_path: Path, header: str, order: str, name: str, mark: str
 ) -> None:
-    check(put(tmp_path, f"{mark}{header}\n{table(order)}", name), "x" in order)
+    check(taken(tmp_path, f"{mark}{header}\n{table(order)}", name), "x" in order)
 
 
 @pytest.mark.parametrize("separator", [",", ";", "\t", " ", ", ", "; ", "  ", " \t ", "|"])
@@ -100,17 +94,17 @@ def test_fields_are_separated_by_what_separates_them(
     tmp_path: Path, separator: str, name: str
 ) -> None:
     order = "tWXYZ" if name == "k.csv" else "txyzXYZW"
-    check(put(tmp_path, table(order, separator), name), name == "k.tum")
+    check(taken(tmp_path, table(order, separator), name), name == "k.tum")
     header = separator.join(["time", "q_z", "q_y", "q_x", "q_w"])
-    check(put(tmp_path, f"{header}\n{table('tZYXW', separator)}", name), False)
-    check(put(tmp_path, f"# {header}\n{table('tZYXW', separator)}", name), False)
+    check(taken(tmp_path, f"{header}\n{table('tZYXW', separator)}", name), False)
+    check(taken(tmp_path, f"# {header}\n{table('tZYXW', separator)}", name), False)
 
 
 @pytest.mark.parametrize("separator", [";", "\t", " ", "; ", "|"])
 @pytest.mark.parametrize("header", ["", "time{0}qw{0}qx{0}qy{0}qz\n"])
 def test_decimal_commas(tmp_path: Path, separator: str, header: str) -> None:
     text = header.format(separator) + table("tWXYZ", separator, comma=True)
-    check(put(tmp_path, text), False)
+    check(taken(tmp_path, text), False)
 
 
 def test_quoted_fields(tmp_path: Path) -> None:
@@ -119,21 +113,21 @@ def test_quoted_fields(tmp_path: Path) -> None:
         '"0","a, ""b""","0.8","0.6","0","0"\n'
         '1,"two\nlines",0.36,"0.48",0.64,0.48\n'
     )
-    check(put(tmp_path, text), False)
-    check(put(tmp_path, '"0,0" "0,8" "0,6" 0 0\n"1" "0,36" "0,48" "0,64" "0,48"\n'), False)
-    check(put(tmp_path, '"0,0","0,8","0,6",0,0\n"1","0,36","0,48","0,64","0,48"\n'), False)
+    check(taken(tmp_path, text), False)
+    check(taken(tmp_path, '"0,0" "0,8" "0,6" 0 0\n"1" "0,36" "0,48" "0,64" "0,48"\n'), False)
+    check(taken(tmp_path, '"0,0","0,8","0,6",0,0\n"1","0,36","0,48","0,64","0,48"\n'), False)
 
 
 def test_names_with_blanks_between_tabs(tmp_path: Path) -> None:
-    check(put(tmp_path, f"time stamp\tq w\tq x\tq y\tq z\n{table('tWXYZ', chr(9))}"), False)
+    check(taken(tmp_path, f"time stamp\tq w\tq x\tq y\tq z\n{table('tWXYZ', chr(9))}"), False)
 
 
 # -- headers and comments -----------------------------------------------------------------------
 
 
 def test_a_header_may_be_separated_otherwise_than_rows(tmp_path: Path) -> None:
-    check(put(tmp_path, f"# timestamp tx ty tz qw qx qy qz\n{table('txyzWXYZ')}", "k.txt"), True)
-    check(put(tmp_path, f"#t,qz,qy,qx,qw\n{table('tZYXW', ' ')}"), False)
+    check(taken(tmp_path, f"# timestamp tx ty tz qw qx qy qz\n{table('txyzWXYZ')}", "k.txt"), True)
+    check(taken(tmp_path, f"#t,qz,qy,qx,qw\n{table('tZYXW', ' ')}"), False)
 
 
 @pytest.mark.parametrize(
@@ -168,7 +162,7 @@ def test_a_header_may_be_separated_otherwise_than_rows(tmp_path: Path) -> None:
 )
 @pytest.mark.parametrize("mark", ["# ", "%", "// ", "\ufeff\ufeff# ", '"#'])
 def test_prose_stays_a_comment(tmp_path: Path, comment: str, mark: str) -> None:
-    check(put(tmp_path, f"{mark}{comment}\n{table('tWXYZ')}"), False)
+    check(taken(tmp_path, f"{mark}{comment}\n{table('tWXYZ')}"), False)
 
 
 @pytest.mark.parametrize(
@@ -183,7 +177,7 @@ def test_prose_stays_a_comment(tmp_path: Path, comment: str, mark: str) -> None:
     ],
 )
 def test_prose_stays_a_comment_beside_scalar_last(tmp_path: Path, comment: str) -> None:
-    check(put(tmp_path, f"# {comment}\n{table('txyzXYZW', ' ')}", "k.txt"), True)
+    check(taken(tmp_path, f"# {comment}\n{table('txyzXYZW', ' ')}", "k.txt"), True)
 
 
 @pytest.mark.parametrize(
@@ -224,7 +218,7 @@ def test_prose_stays_a_comment_beside_scalar_last(tmp_path: Path, comment: str) 
 )
 def test_names_are_honoured_however_a_comment_lists_them(tmp_path: Path, comment: str) -> None:
     order = "XYZWt" if comment.startswith("i") else "tXYZW"
-    check(put(tmp_path, f"{comment}\n{table(order)}"), False)
+    check(taken(tmp_path, f"{comment}\n{table(order)}"), False)
 
 
 @pytest.mark.parametrize(
@@ -241,7 +235,7 @@ def test_names_are_honoured_however_a_comment_lists_them(tmp_path: Path, comment
     ],
 )
 def test_names_of_poses_are_honoured_however_listed(tmp_path: Path, comment: str) -> None:
-    check(put(tmp_path, f"# {comment}\n{table('txyzWXYZ', ' ')}", "k.txt"), True)
+    check(taken(tmp_path, f"# {comment}\n{table('txyzWXYZ', ' ')}", "k.txt"), True)
 
 
 OTHER_ORDERS = [
@@ -266,7 +260,7 @@ def test_an_order_that_contradicts_the_columns_is_refused(
     tmp_path: Path, comment: str, header: str, behind: bool
 ) -> None:
     lines = f"{header}# {comment}\n" if behind else f"# {comment}\n{header}"
-    message = refusal(tmp_path, lines + table("tWXYZ"))
+    message = refused(tmp_path, lines + table("tWXYZ"))
     assert message.startswith(f", line {1 + (behind and bool(header))}: the comment has the quater")
     assert message.endswith(", w, but the columns are read as w, x, y, z")
 
@@ -288,7 +282,7 @@ def test_a_place_of_the_scalar_that_contradicts_the_format_is_refused(
     rows = table("tWXYZ" if name == "k.csv" else "txyzXYZW")
     place = "last" if name == "k.csv" else "first"
     what = f": the comment says that the scalar is {place}, but"
-    assert what in refusal(tmp_path, f"# {comment}\n{rows}", name)
+    assert what in refused(tmp_path, f"# {comment}\n{rows}", name)
 
 
 @pytest.mark.parametrize("item", ["{}", "column {n}: {}", "{n}. {}", "{}: quaternion {}", "{} [-]"])
@@ -298,15 +292,15 @@ def test_columns_listed_one_below_another_are_held_against_the_rows(
     def listed(*names: str) -> str:
         return "".join(f"# {item.format(name, name, n=i)}\n" for i, name in enumerate(names, 1))
 
-    check(put(tmp_path, listed("t", "qw", "qx", "qy", "qz") + table("tWXYZ")), False)
-    message = refusal(tmp_path, listed("t", "qx", "qy", "qz", "qw") + table("tWXYZ"))
+    check(taken(tmp_path, listed("t", "qw", "qx", "qy", "qz") + table("tWXYZ")), False)
+    message = refused(tmp_path, listed("t", "qx", "qy", "qz", "qw") + table("tWXYZ"))
     assert message.startswith(", line 5: the comment has the quaternion in the order x, y, z, w")
-    check(put(tmp_path, "# x is up\n# y is left\n#\n# z\n# w\n" + table("tWXYZ")), False)
+    check(taken(tmp_path, "# x is up\n# y is left\n#\n# z\n# w\n" + table("tWXYZ")), False)
 
 
 def test_names_overrule_a_place_of_the_scalar(tmp_path: Path) -> None:
-    check(put(tmp_path, f"# was scalar last\nt,qw,qx,qy,qz\n{table('tWXYZ')}"), False)
-    check(put(tmp_path, f"# t,qx,qy,qz,qw\n# was scalar first\n{table('tXYZW')}"), False)
+    check(taken(tmp_path, f"# was scalar last\nt,qw,qx,qy,qz\n{table('tWXYZ')}"), False)
+    check(taken(tmp_path, f"# t,qx,qy,qz,qw\n# was scalar first\n{table('tXYZW')}"), False)
 
 
 @pytest.mark.parametrize(
@@ -322,14 +316,14 @@ def test_names_overrule_a_place_of_the_scalar(tmp_path: Path) -> None:
 def test_a_comment_as_wide_as_rows_that_names_no_columns_is_refused(
     tmp_path: Path, comment: str, what: str
 ) -> None:
-    assert refusal(tmp_path, f"# {comment}\n{table('tWXYZ')}").startswith(f", line 1: {what}")
-    check(put(tmp_path, f"# {comment}\nt,qw,qx,qy,qz\n{table('tWXYZ')}"), False)
+    assert refused(tmp_path, f"# {comment}\n{table('tWXYZ')}").startswith(f", line 1: {what}")
+    check(taken(tmp_path, f"# {comment}\nt,qw,qx,qy,qz\n{table('tWXYZ')}"), False)
 
 
 def test_columns_that_only_look_like_parts_of_a_quaternion_are_left(tmp_path: Path) -> None:
     header = "i,t,tx,ty,tz,qw,qx,qy,qz,rot_r,rot_p,real,s\n"
     text = "".join(f"5,{line},1,2,3,4\n" for line in table("txyzWXYZ").splitlines())
-    motion = put(tmp_path, header + text)
+    motion = taken(tmp_path, header + text)
     check(motion, True)
     assert motion.unread == ("i", "rot_r", "rot_p", "real", "s")
 
@@ -337,27 +331,27 @@ def test_columns_that_only_look_like_parts_of_a_quaternion_are_left(tmp_path: Pa
 @pytest.mark.parametrize("label", ['"#1"', "%1", "//host/1"])
 def test_rows_that_begin_with_a_label_are_no_comments(tmp_path: Path, label: str) -> None:
     rows = "".join(f"{label},{line}\n" for line in table("tWXYZ").splitlines())
-    check(put(tmp_path, f"label,t,qw,qx,qy,qz\n{rows}"), False)
+    check(taken(tmp_path, f"label,t,qw,qx,qy,qz\n{rows}"), False)
 
 
 def test_comments_among_the_data_are_no_header(tmp_path: Path) -> None:
     first, second = table("tWXYZ").splitlines()
-    check(put(tmp_path, f"{first}\n# t,qx,qy,qz,qw\n{second}\n"), False)
+    check(taken(tmp_path, f"{first}\n# t,qx,qy,qz,qw\n{second}\n"), False)
 
 
 def test_a_comment_and_a_header_that_agree(tmp_path: Path) -> None:
     names = "t,qx,qy,qz,qw"
-    check(put(tmp_path, f"# made up\n# {names}\n{names}\n{table('tXYZW')}"), False)
+    check(taken(tmp_path, f"# made up\n# {names}\n{names}\n{table('tXYZW')}"), False)
 
 
 def test_names_among_prose_are_honoured(tmp_path: Path) -> None:
-    check(put(tmp_path, f"# columns are t qx qy qz qw\n{table('tXYZW', ' ')}"), False)
+    check(taken(tmp_path, f"# columns are t qx qy qz qw\n{table('tXYZW', ' ')}"), False)
 
 
 def test_positions_and_other_columns_are_told_apart(tmp_path: Path) -> None:
     header = "t,tx,ty,tz,w,x,y,z,v_x [m/s],v_y [m/s],label"
     text = "".join(f"{line},7,8,a\n" for line in table("txyzWXYZ").splitlines())
-    motion = put(tmp_path, f"{header}\n{text}")
+    motion = taken(tmp_path, f"{header}\n{text}")
     check(motion, True)
     assert motion.unread == ("v_x [m/s]", "v_y [m/s]", "label")
 
@@ -394,7 +388,7 @@ def test_a_header_that_contradicts_itself_is_refused(
     tmp_path: Path, header: str, what: str
 ) -> None:
     row = ",".join(["0", *["1"] * header.count(",")])
-    message = refusal(tmp_path, f"# first\n{header}\n{row}\n")
+    message = refused(tmp_path, f"# first\n{header}\n{row}\n")
     assert message.startswith(f", line 2: {what}")
 
 
@@ -412,7 +406,7 @@ def test_a_header_that_contradicts_itself_is_refused(
 def test_headers_that_contradict_the_rows_are_refused(
     tmp_path: Path, lines: str, number: int, what: str
 ) -> None:
-    message = refusal(tmp_path, f"{lines}\n{table('tWXYZ')}")
+    message = refused(tmp_path, f"{lines}\n{table('tWXYZ')}")
     assert message.startswith(f", line {number}: {what}")
 
 
@@ -434,7 +428,7 @@ def test_headers_that_contradict_the_rows_are_refused(
     ],
 )
 def test_a_damaged_first_line_is_no_header(tmp_path: Path, first: str, what: str) -> None:
-    message = refusal(tmp_path, f"{first}\n{table('tWXYZ')}")
+    message = refused(tmp_path, f"{first}\n{table('tWXYZ')}")
     assert message.startswith(f", line 1: {what}")
 
 
@@ -447,9 +441,9 @@ def test_a_damaged_first_line_is_no_header(tmp_path: Path, first: str, what: str
     ],
 )
 def test_a_row_unlike_the_others_is_refused(tmp_path: Path, row: str, what: str) -> None:
-    assert refusal(tmp_path, f"{table('tWXYZ')}{row}\n3,1,0,0,0\n").startswith(f", line 3: {what}")
+    assert refused(tmp_path, f"{table('tWXYZ')}{row}\n3,1,0,0,0\n").startswith(f", line 3: {what}")
 
 
 def test_decimal_commas_and_points_do_not_mix(tmp_path: Path) -> None:
-    message = refusal(tmp_path, "0;0,8;0,6;0;0\n1;0.8;0.6;0;0\n")
+    message = refused(tmp_path, "0;0,8;0,6;0;0\n1;0.8;0.6;0;0\n")
     assert message == ", line 2: decimal commas and decimal points in one file"

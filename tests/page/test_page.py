@@ -15,6 +15,7 @@ import pytest
 
 from pages import EVIL, Elements, scenes
 from quatspline import page as page_module
+from quatspline.cli import running
 from quatspline.cli.commands import main
 from quatspline.figures.meshes import key_mesh
 from quatspline.findings import decisions, targets
@@ -28,7 +29,6 @@ from quatspline.page.plots import scheme_look
 from quatspline.page.sections import RANKINGS, SECTIONS
 from quatspline.page.table1 import duration
 from quatspline.quaternion import exp
-from quatspline.runs import running
 from quatspline.runs.results import Results
 from quatspline.trajectories.paper import CASES
 from tools.readme import REFERENCE

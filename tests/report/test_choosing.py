@@ -9,11 +9,11 @@ import pandas as pd
 import pytest
 
 from quatspline.catalogue import load
+from quatspline.cli import running
 from quatspline.figures import style
 from quatspline.findings import decisions
 from quatspline.findings.findings import findings, reader
-from quatspline.runs import running
-from quatspline.runs.experiment import Run, experiments, found
+from quatspline.runs.experiment import Run, experiments, files
 from quatspline.runs.results import Results
 
 LESS = {"a": -1, "b": -1}
@@ -21,7 +21,7 @@ LESS = {"a": -1, "b": -1}
 
 @pytest.fixture
 def module():
-    return load(found()["choosing"], "experiment")
+    return load(files()["choosing"], "experiment")
 
 
 @pytest.fixture

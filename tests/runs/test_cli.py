@@ -1,12 +1,10 @@
-"""The command line, as a process; experiments come from a folder of their own."""
+"""The command line; experiments come from a folder of their own."""
 
 from __future__ import annotations
 
-import json
 import os
 import signal
 import subprocess
-import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -16,49 +14,14 @@ import pandas as pd
 import pytest
 
 import quatspline
-from quatspline import catalogue
-from quatspline.cli import commands
+from desk import Desk, count, refused
+from processes import command, environment, python
+from quatspline.cli import running
 from quatspline.cli.grid import sample_times
 from quatspline.motion import files
-from quatspline.runs import experiment, running
+from quatspline.runs import experiment
 
-Finished = subprocess.CompletedProcess[str]
-
-SCHEME = '''
-import numpy as np
-from quatspline import ConvergenceError, SolveReport
-from quatspline.curve import Curve
-
-class Stairs(Curve):
-    """The last keyframe before t: no compilation, no solve."""
-    title, reference, continuity, order, support = "Stairs", "none", 0, 0, 1
-    constant_rate = "no"
-    def _fit(self, keyframes):
-        {fit}
-    def _orientation(self, t):
-        knots = self._keyframes.knots[: self._keyframes.count]
-        return self._keyframes.quaternions[np.searchsorted(knots, t, side="right") - 1]
-'''
 FAILING = 'self._conclude(SolveReport("jacobi", "residual", 9, 0.1, 0.2, False, 1e-6))'
-
-EXPERIMENT = """
-import pandas as pd
-from matplotlib.figure import Figure
-TITLE, PAPER, NOTE = "{title}", {paper}, "As ever."
-def measure(run):
-    {before}
-    names = run.schemes or ["b", "a"]
-    return pd.DataFrame({{"scheme": names, "x": run.rng("x").random(len(names))}})
-"""
-
-FIGURE = """
-def draw(table):
-    figure = Figure()
-    figure.subplots().plot(table["x"])
-    return figure
-def caption(table):
-    return f"{len(table)} rows, from {table['scheme'][0]}."
-"""
 
 DERIVED = """
 import pandas as pd
@@ -68,70 +31,9 @@ def derive(run, read):
 """
 
 
-class Desk:
-    """A folder with schemes, experiments and keyframes, and the command run in it."""
-
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        for name in ("schemes", "experiments"):
-            (folder / name).mkdir()
-        self.environment = os.environ | {
-            "QUATSPLINE_EXPERIMENTS": str(folder / "experiments"),
-            "QUATSPLINE_BASELINES": str(folder / "schemes"),
-            "PYTHONPATH": str(catalogue.PACKAGE.parent),
-            "PYTHONDONTWRITEBYTECODE": "1",
-        }
-
-    def scheme(self, name: str, fit: str = "pass") -> None:
-        (self.folder / "schemes" / f"{name}.py").write_text(SCHEME.format(fit=fit))
-
-    def experiment(self, name: str, before: str = "pass", **more: bool) -> None:
-        """Write an experiment; more: paper=True, figure=False (which spares a slow import)."""
-        paper, figure = more.get("paper", False), more.get("figure", True)
-        text = EXPERIMENT.format(title=f"The {name}", paper=paper, before=before)
-        path = self.folder / "experiments" / f"{name}.py"
-        path.write_text(text + (FIGURE if figure else ""))
-
-    def keyframes(self, name: str = "k.csv", text: str = "0,1,0,0,0\n1,0.8,0.6,0,0\n") -> Path:
-        path = self.folder / name
-        path.write_text(text)
-        return path
-
-    def command(self, *arguments: object) -> list[str]:
-        return [sys.executable, "-m", "quatspline", *map(str, arguments)]
-
-    def __call__(self, *arguments: object) -> Finished:
-        return subprocess.run(
-            self.command(*arguments),
-            cwd=self.folder,
-            env=self.environment,
-            capture_output=True,
-            text=True,
-        )
-
-    def counted(self, name: str) -> int:
-        path = self.folder / f"{name}.count"
-        return len(path.read_text()) if path.exists() else 0
-
-    def manifest(self) -> dict:
-        return json.loads((self.folder / "results" / "manifest.json").read_text())
-
-
-def count(name: str) -> str:
-    """Source that notes in a file that the experiment was measured once more."""
-    return f'open("{name}.count", "a").write(".")'
-
-
 @pytest.fixture
 def desk(tmp_path: Path) -> Desk:
     return Desk(tmp_path)
-
-
-def refused(done: Finished, status: int = 2) -> str:
-    assert done.returncode == status, done.stderr
-    assert done.stderr.count("\n") == 1
-    assert "Traceback" not in done.stderr
-    return done.stderr.rstrip("\n")
 
 
 # -- usage --------------------------------------------------------------------------------------
@@ -144,24 +46,19 @@ def test_help_and_version(desk: Desk) -> None:
     assert {"list", "run", "sample"} <= set(shown.stdout.split())
 
 
-def test_help_imports_nothing_slow(desk: Desk) -> None:
-    script = (
+def test_help_imports_nothing_slow() -> None:
+    python(
         "import sys; from quatspline.cli.commands import main; assert main(['--help']) == 0;"
         "slow = {'numpy', 'numba', 'scipy', 'pandas', 'matplotlib'} & set(sys.modules);"
         "assert not slow, slow"
     )
-    command = [sys.executable, "-c", script]
-    assert subprocess.run(command, env=desk.environment, capture_output=True).returncode == 0
 
 
-def test_list_imports_no_table_no_figure(desk: Desk) -> None:
-    script = (
+def test_list_imports_no_table_no_figure() -> None:
+    python(
         "import sys; from quatspline.cli.commands import main; assert main(['list']) == 0;"
         "slow = {'pandas', 'matplotlib', 'tqdm'} & set(sys.modules); assert not slow, slow"
     )
-    command = [sys.executable, "-c", script]
-    done = subprocess.run(command, env=desk.environment, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
 
 
 @pytest.mark.parametrize(
@@ -229,39 +126,29 @@ def test_list_imports_no_table_no_figure(desk: Desk) -> None:
     ],
 )
 def test_bad_usage_and_bad_input_are_told_in_one_line(
-    desk: Desk,
-    arguments: list[str],
-    what: str,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    desk: Desk, arguments: list[str], what: str
 ) -> None:
-    monkeypatch.chdir(desk.folder)
-    for name in ("QUATSPLINE_EXPERIMENTS", "QUATSPLINE_BASELINES"):
-        monkeypatch.setenv(name, desk.environment[name])
     desk.experiment("errors")
     desk.scheme("stairs")
-    three = SCHEME.format(fit="pass").replace("    constant", "    min_keyframes = 3\n    constant")
-    (desk.folder / "schemes" / "three.py").write_text(three)
+    desk.scheme("three", claims="min_keyframes = 3")
     (desk.folder / "schemes" / "broken.py").write_text("import nothing_of_this_name")
     desk.keyframes()
     desk.keyframes("bad.csv", "0,1,0,0,0\n1,1,0\n")
     desk.keyframes("one.csv", "0,1,0,0,0\n")
     desk.keyframes("pair.csv")
-    np.savez("return.npz", times=[0, 1, 2], quaternions=[[1, 0, 0, 0], [0.8, 0.6, 0, 0]])
+    closed = {"times": [0, 1, 2], "quaternions": [[1, 0, 0, 0], [0.8, 0.6, 0, 0]]}
+    np.savez(desk.folder / "return.npz", **closed)
     desk.keyframes("long.csv", "-1e308,1,0,0,0\n1e308,0.8,0.6,0,0\n")
     desk.keyframes("uneven.csv", "0,1,0,0,0\n1,0.8,0.6,0,0\n5,0.6,0.8,0,0\n")
-    status = commands.main(arguments)  # in this process: there are many, and others are processes
-    output = capsys.readouterr()
-    assert what in refused(subprocess.CompletedProcess(arguments, status, *output))
-    assert output.out == ""
+    done = desk(*arguments)
+    assert what in refused(done)
+    assert done.stdout == ""
 
 
-def test_files_that_no_reader_unpacks_are_told_in_one_line(
-    desk: Desk, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.chdir(desk.folder)
-    np.savez_compressed("k.npz", times=[0.0, 1.0], quaternions=[[1.0, 0, 0, 0], [0.8, 0.6, 0, 0]])
-    whole = Path("k.npz").read_bytes()
+def test_files_that_no_reader_unpacks_are_told_in_one_line(desk: Desk) -> None:
+    path = desk.folder / "k.npz"
+    np.savez_compressed(path, times=[0.0, 1.0], quaternions=[[1.0, 0, 0, 0], [0.8, 0.6, 0, 0]])
+    whole = path.read_bytes()
     flags, methods = ((6, 8), b"\x01"), ((8, 10), b"\x63")
     for (local, central), value in (flags, methods):
         damaged = bytearray(whole)
@@ -269,9 +156,8 @@ def test_files_that_no_reader_unpacks_are_told_in_one_line(
             for at in range(len(whole)):
                 if whole.startswith(mark, at):
                     damaged[at + offset : at + offset + 1] = value
-        Path("k.npz").write_bytes(damaged)
-        status = commands.main(["sample", "k.npz", "--scheme", "slerp", "--count", "2"])
-        line = refused(subprocess.CompletedProcess([], status, *capsys.readouterr()))
+        path.write_bytes(damaged)
+        line = refused(desk("sample", "k.npz", "--scheme", "slerp", "--count", "2"))
         assert line.startswith("quatspline: k.npz: not an NPZ file of plain arrays: it")
 
 
@@ -290,11 +176,7 @@ def test_every_malformed_line_is_told(desk: Desk) -> None:
 def test_list_shows_claims_and_the_unusable_with_reason(desk: Desk) -> None:
     desk.scheme("stairs")
     (desk.folder / "schemes" / "broken.py").write_text("import nothing_of_this_name")
-    (desk.folder / "schemes" / "far_peer.py").write_text(
-        SCHEME.format(fit="pass").replace(
-            "    constant", '    peer = "no-such-thing"\n    constant'
-        )
-    )
+    desk.scheme("far_peer", claims='peer = "no-such-thing"')
     done = desk("list")
     assert done.returncode == 0
     lines = {line.split()[0]: line for line in done.stdout.splitlines()}
@@ -316,10 +198,14 @@ def test_a_scheme_without_a_claim_does_not_stop_the_list(desk: Desk) -> None:
 def test_a_reader_that_stops_early_is_no_error(desk: Desk) -> None:
     desk.scheme("stairs")
     desk.keyframes()
-    command = desk.command("sample", "k.csv", "--scheme", "stairs", "--count", 300_000)
     pipe = subprocess.PIPE
     with subprocess.Popen(
-        command, cwd=desk.folder, env=desk.environment, stdout=pipe, stderr=pipe, text=True
+        command("sample", "k.csv", "--scheme", "stairs", "--count", 300_000),
+        cwd=desk.folder,
+        env=environment(**desk.environment),
+        stdout=pipe,
+        stderr=pipe,
+        text=True,
     ) as process:
         assert process.stdout is not None
         assert process.stderr is not None
@@ -523,7 +409,7 @@ def test_the_figure_is_drawn_from_the_file_alone(desk: Desk) -> None:
     ],
 )
 def test_sizes(desk: Desk, option: list[str], sizes: dict[str, str]) -> None:
-    note = 'open("sizes", "a").write(f"{TITLE} {run.quick}\\n")'
+    note = 'with open("sizes", "a") as log: log.write(f"{TITLE} {run.quick}\\n")'
     desk.experiment("paper", note, paper=True, figure=False)
     desk.experiment("other", note, figure=False)
     assert desk("run", "other", "paper", *option).returncode == 0
@@ -670,13 +556,20 @@ def test_whatever_changed_is_measured_again(desk: Desk, change: str) -> None:
     assert desk.counted("first") == 2
 
 
+HELD_ONCE = f"""import os, time
+    held = not os.path.exists("second.count")
+    {count("second")}
+    time.sleep(600 * held)"""
+
+
 def test_a_killed_run_goes_on_too(desk: Desk) -> None:
     desk.experiment("first", count("first"), figure=False)
-    wait = 'import os, time; old = os.path.exists("second.count"); '
-    desk.experiment("second", f"{wait}{count('second')}; old or time.sleep(600)", figure=False)
-    command = desk.command("run", "first", "second")
+    desk.experiment("second", HELD_ONCE, figure=False)
     with subprocess.Popen(
-        command, cwd=desk.folder, env=desk.environment, stderr=subprocess.DEVNULL
+        command("run", "first", "second"),
+        cwd=desk.folder,
+        env=environment(**desk.environment),
+        stderr=subprocess.DEVNULL,
     ) as process:
         wait_until(lambda: desk.counted("second") == 1 or process.poll() is not None)
         process.send_signal(signal.SIGKILL)

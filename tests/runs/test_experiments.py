@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 
+from desk import Desk
 from quatspline import quaternion
-from quatspline.catalogue import load, scheme, shipped
+from quatspline.catalogue import load, scheme, schemes, shipped
 from quatspline.figures import motions, style
 from quatspline.findings.findings import findings, reader
 from quatspline.instruments.blending import blending
-from quatspline.runs import running
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run, crossed, files
 from quatspline.timing.interleaved import interleaved
 from quatspline.timing.protocols import PROTOCOLS, frames
 from quatspline.trajectories.paper import CASES, KEY, SOLVE, TEAPOT
@@ -169,15 +166,11 @@ class Mine(Curve):
 
 
 def test_a_scheme_is_one_file_and_stands_in_the_tables(tmp_path):
-    (tmp_path / "plug").mkdir()
-    (tmp_path / "plug" / "hold_it.py").write_text(PLUGIN, encoding="utf-8")
-    env = {**os.environ, "QUATSPLINE_BASELINES": str(tmp_path / "plug")}
-    out = tmp_path / "results"
-    command = [sys.executable, "-m", "quatspline", "run", "continuity", "--quick"]
-    command += ["--schemes", "hold-it,slerp", "--out", str(out)]
-    done = subprocess.run(command, env=env, capture_output=True, text=True, check=False)
+    desk = Desk(tmp_path)
+    (tmp_path / "schemes" / "hold_it.py").write_text(PLUGIN, encoding="utf-8")
+    done = desk("run", "continuity", "--quick", "--schemes", "hold-it,slerp", "--jobs", 1)
     assert done.returncode == 0, done.stderr
-    table = pd.read_csv(out / "continuity.csv")
+    table = pd.read_csv(tmp_path / "results" / "continuity.csv")
     assert set(table["scheme"]) == {"hold-it", "slerp"}
     assert (table.loc[table["scheme"] == "hold-it", "measured_k"] == -1).all()
     assert (table.loc[table["scheme"] == "slerp", "measured_k"] == 0).all()
@@ -214,8 +207,19 @@ def test_findings_name_cells_that_exist():
             assert rows.iloc[0][cell.column] == cell.value
 
 
+def test_cells_cross_all_values():
+    run = Run(quick=True, schemes=["slerp", "nlerp"])
+    assert crossed(scheme=run.names, degrees=(10, 60)) == [
+        {"scheme": "slerp", "degrees": 10},
+        {"scheme": "slerp", "degrees": 60},
+        {"scheme": "nlerp", "degrees": 10},
+        {"scheme": "nlerp", "degrees": 60},
+    ]
+    assert set(schemes()) <= set(Run(quick=True).names)
+
+
 def test_docs_point_to_tables_that_experiments_make():
-    known = set(running.found())
+    known = set(files())
     for page in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]:
         named = re.findall(r"results/(\w[\w-]*)\.csv", page.read_text(encoding="utf-8"))
         assert set(named) <= known, page
@@ -225,7 +229,7 @@ def test_schemes_that_do_not_apply_are_rows_of_table1(monkeypatch):
     monkeypatch.setattr(motions, "render", lambda case, t, q: len(t))
     module = experiment("table1")
     names = ("quartic", "log-cubic", "nlerp")
-    table = module._group(Run(quick=True), TEAPOT, TEAPOT.rows[1], "solve-once", names)
+    table = module.group(Run(quick=True), TEAPOT, TEAPOT.rows[1], "solve-once", names)
     assert set(table["scheme"]) == set(names)
     row = table[table["scheme"] == "log-cubic"].iloc[0]
     assert "closed" in row["failure"]

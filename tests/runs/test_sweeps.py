@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import subprocess
-import sys
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -15,10 +14,12 @@ from typing import Any
 import pandas as pd
 import pytest
 
+from processes import command, environment
 from quatspline import catalogue
-from quatspline.runs import experiment, running, sweeps
+from quatspline.cli import running
+from quatspline.runs import experiment, sweeps
+from quatspline.runs.experiment import Run
 from quatspline.runs.results import Results
-from quatspline.runs.running import Run
 from quatspline.runs.sweeps import Kept
 
 COUNT = 8
@@ -66,8 +67,8 @@ class Bench:
         return running.run(["swept"], out=self.out, **options)
 
     def popen(self, *arguments: str) -> subprocess.Popen:
-        command = [sys.executable, "-m", "quatspline", "run", "swept", *arguments]
-        return subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE, text=True)
+        line, pipe = command("run", "swept", *arguments), subprocess.PIPE
+        return subprocess.Popen(line, cwd=self.folder, env=environment(), stderr=pipe, text=True)
 
     def table(self) -> bytes:
         return (self.out / "swept.csv").read_bytes()

@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from quatspline.cli import commands, words
+from quatspline.cli import commands, running, words
 from quatspline.cli import compare as compare_command
-from quatspline.runs import experiment, running
+from quatspline.runs import experiment
 
 
 @pytest.fixture
@@ -127,7 +127,7 @@ def test_run_without_schemes_leaves_the_choice_open(asked: dict[str, Any]) -> No
 def test_an_experiment_called_like_a_scheme_is_told(
     asked: dict[str, Any], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(experiment, "found", lambda: {"slerp": Path("slerp.py")})
+    monkeypatch.setattr(experiment, "files", lambda: {"slerp": Path("slerp.py")})
     assert commands.main(["run", "--schemes", "kim", "slerp"]) == 2
     assert "--schemes ... slerp: both a scheme and an experiment" in capsys.readouterr().err
     assert commands.main(["run", "slerp", "--schemes", "kim", "slerp"]) == 0

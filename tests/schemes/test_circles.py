@@ -8,15 +8,14 @@ import numpy as np
 import pytest
 
 import quatspline as qs
-from golden import GOLDEN
-from quatspline import quaternion, stencil
+from golden import GOLDEN, KNOTS, Q, assert_golden
+from quatspline import quaternion
 from quatspline.curve import Curve
 from quatspline.families.circles import BIARC, BLEND, SPLIT
 from quatspline.quaternion import FloatArray
-from walks import apart, apart_up_to_sign, inside, loop, spin, uneven, walk
+from smoothness import assert_own_rates, motion
+from walks import apart, apart_up_to_sign, inside, spin, uneven, walk
 
-Q = np.array(GOLDEN["meta"]["q"], float)
-T = np.array(GOLDEN["meta"]["t_nonuniform"], float)
 NAMES = ["biarc", "circular-blend"]
 ROUNDING = 1e-12
 RATES = 1e-7
@@ -48,13 +47,8 @@ HARD = {
     [("biarc", "biarc_3pt_chart_tangents"), ("circular-blend", "kimnam_smoothstep")],
 )
 def test_golden(name: str, key: str) -> None:
-    golden = GOLDEN["schemes"][key]
-    assert golden["knots"] == "nonuniform"
-    curve = qs.build(name, T, Q)
-    for value in golden["values"]:
-        for order, kind in enumerate(("q", "omega", "alpha")):
-            wanted = np.array(value[kind], float)
-            assert apart(curve(float(value["x"]), order), wanted) < (1e-10, 1e-10, 1e-8)[order]
+    knots = KNOTS[GOLDEN["schemes"][key]["knots"]]
+    assert_golden(qs.build(name, knots, Q), key, (1e-10, 1e-10, 1e-8))
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -74,22 +68,14 @@ def test_hard_keyframes(name: str, kind: str, closed: bool, seed: int) -> None:
     assert apart_up_to_sign(curve(times[: len(q)]), q) <= 1e-14 + 1e-9 * step
 
 
-def case(kind: str) -> tuple[FloatArray, FloatArray, dict[str, bool]]:
-    if kind == "open":
-        return uneven(8), walk(8, 70.0), {}
-    knots = uneven(10)
-    return knots, loop(knots, 1 if kind == "closed -" else 2, wobble=0.4), {"closed": True}
-
-
 @pytest.mark.parametrize("kind", ["open", "closed +", "closed -"])
 @pytest.mark.parametrize("blend", ["smooth", "linear"])
 def test_blend_rates_and_joins(kind: str, blend: str) -> None:
-    knots, q, given = case(kind)
+    knots, q, given = motion(kind, 8, 70.0)
     curve = qs.build("circular-blend", knots, q, blend=blend, **given)
     assert curve.continuity == (2 if blend == "smooth" else 1)
     t = inside(knots, 7)
-    for order, wanted in enumerate(stencil.rates(curve._orientation, t, knots), start=1):
-        assert apart(curve(t, order), wanted) < RATES * np.abs(wanted).max()
+    assert_own_rates(curve, t, (RATES, RATES))
     left, right = np.nextafter(knots[1:-1], -1.0), knots[1:-1]
     size = np.abs(curve(t, 2)).max()
     assert apart(curve(left, 1), curve(right, 1)) < 1e-11
@@ -99,7 +85,7 @@ def test_blend_rates_and_joins(kind: str, blend: str) -> None:
 @pytest.mark.parametrize("kind", ["open", "closed +", "closed -"])
 def test_biarc_is_smooth_as_a_path(kind: str) -> None:
     """Constant speed on a segment, directions that agree at keyframes, speeds that do not."""
-    knots, q, given = case(kind)
+    knots, q, given = motion(kind, 8, 70.0)
     curve = qs.build("biarc", knots, q, **given)
     speed = np.linalg.norm(curve(inside(knots, 9), 1), axis=1).reshape(-1, 9)
     assert np.abs(speed - speed[:, :1]).max() < 1e-11
@@ -111,7 +97,7 @@ def test_biarc_is_smooth_as_a_path(kind: str) -> None:
 
 def test_biarc_joints() -> None:
     """Both arcs end in the joint with one tangent; what differs there is the curvature."""
-    knots, q, _ = case("open")
+    knots, q, _ = motion("open", 8, 70.0)
     curve = qs.build("biarc", knots, q)
     joints = knots[:-1] + curve.segments[0, :, SPLIT] * np.diff(knots)
     assert np.all((curve.segments[0, :, SPLIT] > 0.0) & (curve.segments[0, :, SPLIT] < 1.0))
@@ -119,8 +105,7 @@ def test_biarc_joints() -> None:
         assert apart(curve(joints - 1e-9, order), curve(joints + 1e-9, order)) < largest
     t = inside(knots, 40)
     t = t[np.abs(t[:, None] - joints).min(axis=1) > 0.06]
-    for order, wanted in enumerate(stencil.rates(curve._orientation, t, knots), start=1):
-        assert apart(curve(t, order), wanted) < RATES * np.abs(wanted).max()
+    assert_own_rates(curve, t, (RATES, RATES))
 
 
 def test_biarc_of_an_exact_return_is_a_cusp() -> None:

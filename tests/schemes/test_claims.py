@@ -1,17 +1,28 @@
 """The claims of every scheme against measurement, read off its orientations alone."""
 
 import math
-import sys
 from typing import Any
 
 import numpy as np
 import pytest
 
-import quatspline as qs
 from quatspline import quaternion, stencil
 from quatspline.curve import Curve
+from quatspline.instruments.accuracy import measured_order
 from quatspline.quaternion import FloatArray
-from walks import apart, apart_up_to_sign, applies, count_of, curve_of, inside, loop, uneven, walk
+from walks import (
+    apart,
+    apart_up_to_sign,
+    applies,
+    checks_in,
+    count_of,
+    curve_of,
+    inside,
+    loop,
+    runs_somewhere,
+    uneven,
+    walk,
+)
 
 NEAR, FAR = 1e-4, 1e-2
 """Distances from a knot, in segments, between which a jump that is none must have melted."""
@@ -37,12 +48,12 @@ def taylor(curve: Curve, t: FloatArray, h: float, order: int) -> FloatArray:
     """
     knots = curve.times - curve.times[0]
     if order == 0:
-        return curve._orientation(t)
+        return curve.inner(t)[:, 0]
     if order < 3:
-        return stencil.rates(curve._orientation, t, knots)[order - 1]
+        return stencil.rates_of(curve, t)[order - 1]
     nearest = knots[np.argmin(np.abs(t[:, None] - knots), axis=1)]
     away = np.sign(t - nearest) * h
-    alpha = [stencil.rates(curve._orientation, s, knots)[1] for s in (t, t + away, t + 2 * away)]
+    alpha = [stencil.rates_of(curve, s)[1] for s in (t, t + away, t + 2 * away)]
     return (-1.5 * alpha[0] + 2.0 * alpha[1] - 0.5 * alpha[2]) / away[:, None]
 
 
@@ -156,7 +167,7 @@ def test_order(scheme: Scheme) -> None:
         t = inside(knots, 4)
         t = t[(t > 3.0) & (t < 7.0)]
         errors.append(apart_up_to_sign(curve(t), smooth_motion(t)))
-    slope = -np.polyfit(np.log(sizes - 1), np.log(errors), 1)[0]
+    slope = measured_order(1.0 / (sizes - 1), errors)
     assert math.isclose(slope, scheme.order, abs_tol=ORDER), f"order {slope:.2f}, errors {errors}"
 
 
@@ -212,11 +223,7 @@ def test_jumps_are_told_apart(order: int) -> None:
     assert near.max() > STEADY * far.max()
 
 
-CHECKS = [
-    function
-    for name, function in list(vars(sys.modules[__name__]).items())
-    if name.startswith("test_") and "scheme" in function.__code__.co_varnames[:2]
-]
+CHECKS = checks_in(__name__)
 
 NOT_NEEDED = {"test_does_not_interpolate"}
 """Every scheme of ours interpolates."""
@@ -224,13 +231,7 @@ NOT_NEEDED = {"test_does_not_interpolate"}
 
 @pytest.mark.parametrize("check", CHECKS, ids=lambda check: check.__name__)
 def test_every_claim_is_measured_somewhere(check: Any) -> None:
-    condition = getattr(check, "condition", lambda scheme: True)
-    somewhere = [
-        name
-        for name in qs.schemes()
-        if condition(qs.scheme(name)) and check.__name__ not in qs.scheme(name).departs
-    ]
-    assert somewhere or check.__name__ in NOT_NEEDED
+    assert runs_somewhere(check) or check.__name__ in NOT_NEEDED
 
 
 def test_apart_sees_what_is_no_number() -> None:

@@ -3,7 +3,6 @@
 import itertools
 import math
 import pickle
-import sys
 from collections.abc import Callable
 from typing import Any
 
@@ -18,6 +17,7 @@ from walks import (
     apart,
     apart_up_to_sign,
     applies,
+    checks_in,
     count_of,
     curve_of,
     excused,
@@ -25,6 +25,7 @@ from walks import (
     knots_of,
     loop,
     random_units,
+    runs_somewhere,
     spin,
     uneven,
     walk,
@@ -559,7 +560,7 @@ def test_rates_are_the_curves_own(scheme: Scheme) -> None:
     for curve in (example(scheme), *([closed_example(scheme, 1)] if scheme.closable else [])):
         knots = curve.times - curve.times[0]
         t = np.unique(np.concatenate([inside(knots, 9), knots[:-1]]))
-        measured = stencil.rates(curve._orientation, t, knots)
+        measured = stencil.rates_of(curve, t)
         h = np.diff(knots).min()
         for order in set(scheme.orders) - {0} - set(curve.numeric_orders):
             gap = np.linalg.norm(curve(t, order) - measured[order - 1], axis=1) * h**order
@@ -936,9 +937,9 @@ def test_bad_closed_input_is_refused(scheme: Scheme) -> None:
 
 
 def test_bad_options_are_refused(scheme: Scheme) -> None:
-    from quatspline.options import declared
+    from quatspline.options import declared_by
 
-    known = declared(scheme._fit)
+    known = declared_by(scheme)
     for name in known:
         misspelt = name[:-1] + name[-1] * 2
         message = f"{scheme.name} has no option '{misspelt}': {nearest(misspelt, known)}"
@@ -1001,12 +1002,7 @@ def test_integer_stamps_are_subtracted_as_integers(scheme: Scheme) -> None:
 # -- the tests of the tests ---------------------------------------------------------------------
 
 
-CHECKS = [
-    function
-    for name, function in list(vars(sys.modules[__name__]).items())
-    if name.startswith("test_") and "scheme" in function.__code__.co_varnames[:2]
-]
-
+CHECKS = checks_in(__name__)
 
 NOT_NEEDED = {"test_uneven_times_are_refused"}
 """Every scheme so far takes uneven times; test_keyframes refuses them with a scheme of its own."""
@@ -1014,13 +1010,7 @@ NOT_NEEDED = {"test_uneven_times_are_refused"}
 
 @pytest.mark.parametrize("check", CHECKS, ids=lambda check: check.__name__)
 def test_every_check_runs_somewhere(check: Any) -> None:
-    condition = getattr(check, "condition", lambda scheme: True)
-    somewhere = [
-        name
-        for name in qs.schemes()
-        if condition(qs.scheme(name)) and check.__name__ not in qs.scheme(name).departs
-    ]
-    assert somewhere or check.__name__ in NOT_NEEDED
+    assert runs_somewhere(check) or check.__name__ in NOT_NEEDED
 
 
 MAY_DEPART = {"test_keeps_given_signs"}

@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 
 import quatspline as qs
-from golden import GOLDEN
+from golden import GOLDEN, KNOTS, Q, assert_golden
 from quatspline import quaternion, stencil
 from quatspline.fitting.tangents import CHART, SECANT, chart_velocities
 
-Q = np.array(GOLDEN["meta"]["q"], dtype=float)
-T = np.array(GOLDEN["meta"]["t_nonuniform"], dtype=float)
+T = KNOTS["nonuniform"]
 NEAR = 1e-9
 
 
@@ -30,16 +29,10 @@ def wound(count=7, turns=1.0, seed=3):
 
 @pytest.mark.parametrize("window", [3, 5])
 def test_golden(window):
-    golden = GOLDEN["schemes"][f"kks_hermite_{window}pt"]
-    assert golden["knots"] == "nonuniform"
+    entry = f"kks_hermite_{window}pt"
+    assert GOLDEN["schemes"][entry]["knots"] == "nonuniform"
     curve = qs.build("hermite", T, Q, window=window)
-    for value in golden["values"]:
-        for order, kind in enumerate(("q", "omega", "alpha")):
-            expected = np.array(value[kind], dtype=float)
-            tolerance = 1e-10 if order == 2 else 1e-12
-            np.testing.assert_allclose(
-                curve(float(value["x"]), order), expected, rtol=0.0, atol=tolerance
-            )
+    assert_golden(curve, entry, (1e-12, 1e-12, 1e-10))
 
 
 @pytest.mark.parametrize("window", [3, 5])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import quatspline as qs
-from golden import GOLDEN
+from golden import GOLDEN, KNOTS, Q, assert_golden
 from powers import powers
 from quatspline import quaternion
 from quatspline.curve import Curve
@@ -15,9 +15,7 @@ from quatspline.fitting.block_tridiagonal import solve_block_tridiagonal
 from quatspline.quaternion import FloatArray
 from walks import walk
 
-KEYS = np.array(GOLDEN["meta"]["q"], float)
-UNEVEN = np.array([0.0, 0.7, 1.9, 2.6, 4.0])
-KNOTS = {"uniform": np.arange(5.0), "nonuniform": UNEVEN, "closed": np.append(UNEVEN, 5.1)}
+UNEVEN = KNOTS["nonuniform"]
 
 
 def kim(times: Any, quaternions: Any, **given: Any) -> Curve:
@@ -44,14 +42,9 @@ def miss(curve: Curve) -> float:
     ],
 )
 def test_golden(name: str, given: dict[str, Any], method: str) -> None:
-    entry = GOLDEN["schemes"][name]
-    curve = kim(KNOTS[entry["knots"]], KEYS, method=method, tolerance=1e-13, **given)
-    for value in entry["values"]:
-        for order, key in enumerate(("q", "omega", "alpha")):
-            bound = 1e-9 if order == 2 else 1e-12
-            np.testing.assert_allclose(
-                curve(float(value["x"]), order), np.array(value[key], float), rtol=0, atol=bound
-            )
+    knots = KNOTS[GOLDEN["schemes"][name]["knots"]]
+    curve = kim(knots, Q, method=method, tolerance=1e-13, **given)
+    assert_golden(curve, name, (1e-12, 1e-12, 1e-9))
 
 
 def jumps(curve: Curve, order: int, h: float) -> float:
@@ -93,15 +86,15 @@ def test_closed_curve_returns_with_its_sign(sign: int) -> None:
 
 
 def test_natural_ends_have_no_acceleration() -> None:
-    curve = kim(UNEVEN, KEYS, tolerance=1e-13)
+    curve = kim(UNEVEN, Q, tolerance=1e-13)
     assert np.abs(curve(curve.times[[0, -1]], 2)).max() < 1e-11
 
 
 def test_two_keyframes_make_a_slerp() -> None:
     t = np.linspace(1.0, 3.0, 9)
     for given in ({}, {"ends": "clamped"}):
-        curve = kim([1.0, 3.0], KEYS[:2], **given)
-        expected = quaternion.slerp(KEYS[0], KEYS[1], (t - 1.0) / 2.0)
+        curve = kim([1.0, 3.0], Q[:2], **given)
+        expected = quaternion.slerp(Q[0], Q[1], (t - 1.0) / 2.0)
         np.testing.assert_allclose(curve(t), expected, atol=1e-15)
 
 
@@ -161,7 +154,7 @@ def test_tracks_are_those_of_single_curves() -> None:
 )
 def test_refusals(given: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
-        kim(None, KEYS, **given)
+        kim(None, Q, **given)
 
 
 # -- convergence --------------------------------------------------------------------------------

@@ -6,26 +6,25 @@ import numpy as np
 import pytest
 
 import quatspline as qs
-from golden import GOLDEN
+from golden import GOLDEN, KNOTS, Q
 from quatspline.curve import Curve
 from quatspline.trajectories.sets import step_sets
 from walks import spin, uneven, walk
 
-KEYFRAMES = np.array(GOLDEN["meta"]["q"], dtype=float)
-TIMES = np.array(GOLDEN["meta"]["t_nonuniform"], dtype=float)
+TIMES = KNOTS["nonuniform"]
 LEAST = GOLDEN["schemes"]["min_torque"]
 
 
 @pytest.mark.parametrize("subintervals", [1, 2, 4, 8, 16, 32])
 def test_golden_energies(subintervals: int) -> None:
-    curve = qs.build("min-torque", TIMES, KEYFRAMES, subintervals=subintervals, tolerance=1e-9)
+    curve = qs.build("min-torque", TIMES, Q, subintervals=subintervals, tolerance=1e-9)
     assert curve.energy[0] == pytest.approx(LEAST["E_by_m"][str(subintervals)], abs=2e-10)
     assert curve.solve_report.iterations <= 12
 
 
 def test_golden_velocities() -> None:
     """The golden run stopped some 1e-8 from its minimum, whose energy is flat there."""
-    curve = qs.build("min-torque", TIMES, KEYFRAMES, subintervals=32, tolerance=1e-10)
+    curve = qs.build("min-torque", TIMES, Q, subintervals=32, tolerance=1e-10)
     assert np.abs(curve(TIMES, 1) - np.array(LEAST["omega_knots"])).max() < 2e-7
     wanted = [0.901148534, 0.392833103, -0.033305734, -0.180289216]
     assert np.abs(curve(1.2) - wanted).max() < 3e-8
@@ -61,15 +60,15 @@ def energy(curve: Curve) -> float:
     ],
 )
 def test_no_other_curve_has_less(name: str, given: dict[str, Any], golden: str | None) -> None:
-    other = energy(qs.build(name, TIMES, KEYFRAMES, **given))
-    assert other > qs.build("min-torque", TIMES, KEYFRAMES).energy[0]
+    other = energy(qs.build(name, TIMES, Q, **given))
+    assert other > qs.build("min-torque", TIMES, Q).energy[0]
     if golden:
         assert other == pytest.approx(GOLDEN["energies_nonuniform_K5"][golden], abs=1e-6)
 
 
 def test_it_is_a_riemannian_cubic() -> None:
     """omega''' = omega'' x omega inside intervals, and no torque at the ends."""
-    curve = qs.build("min-torque", TIMES, KEYFRAMES, subintervals=32, tolerance=1e-9)
+    curve = qs.build("min-torque", TIMES, Q, subintervals=32, tolerance=1e-9)
     assert np.abs(curve(TIMES[[0, -1]], 2)).max() < 1e-4
     h = 0.02
     stencil = np.arange(-4, 5)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from typing import Any
 
 import numpy as np
 import pytest
@@ -11,13 +10,13 @@ from scipy.interpolate import make_interp_spline
 from scipy.spatial.transform import Rotation
 
 import quatspline as qs
-from golden import GOLDEN
-from quatspline import quaternion, stencil
+from golden import GOLDEN, KNOTS, Q
+from quatspline import quaternion
 from quatspline.quaternion import FloatArray
-from walks import apart, apart_up_to_sign, inside, loop, uneven, walk
+from smoothness import assert_joined, assert_own_rates, motion
+from walks import apart, apart_up_to_sign, inside, uneven, walk
 
-Q = np.array(GOLDEN["meta"]["q"], float)
-T = np.array(GOLDEN["meta"]["t_nonuniform"], float)
+T = KNOTS["nonuniform"]
 ENDS = ["natural", "not-a-knot", "complete"]
 UNIQUE = 1e-3
 """sigma_2 + sign(det) sigma_3 above which the nearest rotation is one, and known to rounding."""
@@ -96,33 +95,14 @@ def test_curve_is_the_polar_factor_of_the_spline(degree: int, degrees: float) ->
         assert np.isfinite(curve(t, 2)).all()
 
 
-def case(kind: str) -> tuple[FloatArray, FloatArray, dict[str, Any]]:
-    if kind == "open":
-        return uneven(9), walk(9, 50.0), {}
-    knots = uneven(10)
-    return knots, loop(knots, 1 if kind == "closed -" else 2, wobble=0.4), {"closed": True}
-
-
 @pytest.mark.parametrize("degree", [3, 5])
 @pytest.mark.parametrize("kind", ["open", "closed +", "closed -"])
 def test_rates_and_joins(degree: int, kind: str) -> None:
-    knots, q, given = case(kind)
+    knots, q, given = motion(kind, 9, 50.0)
     curve = qs.build("moving-frame", knots, q, degree=degree, **given)
     assert (curve.continuity, curve.order) == (degree - 1, degree + 1)
-    t = inside(knots, 6)
-    for order, wanted in enumerate(stencil.rates(curve._orientation, t, knots), start=1):
-        assert apart(curve(t, order), wanted) < (1e-7, 1e-6)[order - 1] * np.abs(wanted).max()
-    left, right = np.nextafter(knots[1:-1], -1.0), knots[1:-1]
-    for order in (1, 2):
-        size = np.abs(curve(t, order)).max()
-        assert apart(curve(left, order), curve(right, order)) < 1e-11 * size
-    if given:  # the seam
-        last = np.nextafter(knots[-1], 0.0)
-        assert apart(curve(last), curve.keyframes.sign * q[0]) < 1e-12
-        for order in (1, 2):
-            assert (
-                apart(curve(last, order), curve(0.0, order)) < 1e-11 * np.abs(curve(t, order)).max()
-            )
+    assert_own_rates(curve, inside(knots, 6), (1e-7, 1e-6))
+    assert_joined(curve, seam=1e-12)
 
 
 def test_cubic_ends() -> None:

@@ -8,16 +8,9 @@ import numpy as np
 import pytest
 
 import quatspline as qs
-from golden import GOLDEN
+from golden import GOLDEN, KNOTS, Q, assert_golden
 from quatspline import quaternion, stencil
 from quatspline.families import chords, nested
-
-Q = np.array(GOLDEN["meta"]["q"], dtype=float)
-TIMES = {
-    "uniform": np.array(GOLDEN["meta"]["t_uniform"], dtype=float),
-    "nonuniform": np.array(GOLDEN["meta"]["t_nonuniform"], dtype=float),
-    "closed": np.array(GOLDEN["meta"]["t_closed"], dtype=float),
-}
 
 ENTRIES = {
     "slerp": ("slerp", {}),
@@ -46,6 +39,7 @@ SCHEMES = {
 }
 """Every scheme of this file and its continuity."""
 
+T = KNOTS["nonuniform"]
 NEAR = 1e-9
 """Distance of one-sided samples from a knot: smooth rates move less than `SMOOTH` within it."""
 SMOOTH = 1e-6
@@ -83,20 +77,13 @@ def odd_loop():
 @pytest.mark.parametrize("entry", ENTRIES)
 def test_golden(entry):
     name, options = ENTRIES[entry]
-    golden = GOLDEN["schemes"][entry]
-    curve = qs.build(name, TIMES[golden["knots"]], Q, **options)
-    for value in golden["values"]:
-        for order, kind in enumerate(("q", "omega", "alpha")):
-            expected = np.array(value[kind], dtype=float)
-            tolerance = 1e-10 if order == 2 else 1e-12
-            np.testing.assert_allclose(
-                curve(float(value["x"]), order), expected, rtol=0.0, atol=tolerance
-            )
+    curve = qs.build(name, KNOTS[GOLDEN["schemes"][entry]["knots"]], Q, **options)
+    assert_golden(curve, entry, (1e-12, 1e-12, 1e-10))
 
 
 def test_golden_tangents_of_catmull_rom():
     golden = GOLDEN["schemes"]["catmull_rom_slerp_bezier_chart_ends"]
-    curve = qs.build("catmull-rom", TIMES[golden["knots"]], Q)
+    curve = qs.build("catmull-rom", KNOTS[golden["knots"]], Q)
     expected = 2.0 * np.array(golden["v"], dtype=float)
     np.testing.assert_allclose(curve(curve.times, 1), expected, rtol=0.0, atol=1e-12)
 
@@ -209,8 +196,8 @@ def test_slerp_against_scipy():
     transform = pytest.importorskip("scipy.spatial.transform")
     rotations = transform.Rotation.from_quat(Q, scalar_first=True)
     t = np.linspace(0.0, 4.0, 301)
-    expected = transform.Slerp(TIMES["nonuniform"], rotations)(t)
-    ours = qs.build("slerp", TIMES["nonuniform"], rotations).rotation(t)
+    expected = transform.Slerp(T, rotations)(t)
+    ours = qs.build("slerp", T, rotations).rotation(t)
     assert (expected * ours.inv()).magnitude().max() < 1e-14
 
 
@@ -278,9 +265,9 @@ SQUADS = [
 
 @pytest.mark.parametrize(("inner", "knots", "continuity", "order", "size"), SQUADS)
 def test_squad_variants(inner, knots, continuity, order, size):
-    curve = qs.build("squad", TIMES[knots], Q, inner=inner)
+    curve = qs.build("squad", KNOTS[knots], Q, inner=inner)
     assert (curve.continuity, curve.order) == (continuity, order)
-    assert jump(curve, TIMES[knots][1:-1], 1) == pytest.approx(size, abs=0.01 if size else SMOOTH)
+    assert jump(curve, KNOTS[knots][1:-1], 1) == pytest.approx(size, abs=0.01 if size else SMOOTH)
     assert qs.scheme("squad").continuity == 1
 
 
@@ -297,25 +284,25 @@ def test_squads_agree_on_uniform_knots():
 @pytest.mark.parametrize("inner", ["two-a", "single-a", "textbook"])
 def test_squad_ends(inner):
     """Secant ends: inner point a_0 = q_0, velocity s_0; chart ends: the parabola's velocity."""
-    secant = qs.build("squad", TIMES["nonuniform"], Q, inner=inner, ends="secant")
+    secant = qs.build("squad", T, Q, inner=inner, ends="secant")
     first = 2.0 * quaternion.log(quaternion.mul(quaternion.conj(Q[0]), Q[1])) / 0.7
     np.testing.assert_allclose(secant(0.0, 1), first, atol=1e-14)
-    chart = qs.build("squad", TIMES["nonuniform"], Q, inner=inner, ends="chart")
-    bezier = qs.build("catmull-rom", TIMES["nonuniform"], Q, ends="chart")
+    chart = qs.build("squad", T, Q, inner=inner, ends="chart")
+    bezier = qs.build("catmull-rom", T, Q, ends="chart")
     np.testing.assert_allclose(chart(0.0, 1), bezier(0.0, 1), atol=1e-14)
     np.testing.assert_allclose(chart(4.0, 1), bezier(4.0, 1), atol=1e-13)
 
 
 def test_barry_goldman_has_the_velocities_of_catmull_rom():
-    times = TIMES["nonuniform"]
+    times = T
     pyramid, bezier = qs.build("barry-goldman", times, Q), qs.build("catmull-rom", times, Q)
     np.testing.assert_allclose(pyramid(times[1:-1], 1), bezier(times[1:-1], 1), atol=1e-13)
 
 
 def test_kochanek_bartels_plain_is_catmull_rom():
     for closed, knots in ((False, "nonuniform"), (True, "closed")):
-        plain = qs.build("kochanek-bartels", TIMES[knots], Q, closed=closed)
-        other = qs.build("catmull-rom", TIMES[knots], Q, closed=closed)
+        plain = qs.build("kochanek-bartels", KNOTS[knots], Q, closed=closed)
+        other = qs.build("catmull-rom", KNOTS[knots], Q, closed=closed)
         np.testing.assert_array_equal(plain(np.linspace(0, 4, 50)), other(np.linspace(0, 4, 50)))
 
 
@@ -330,7 +317,7 @@ def test_kochanek_bartels_plain_is_catmull_rom():
     ],
 )
 def test_kochanek_bartels_claims_follow_its_options(options, continuity, order, constant):
-    times = TIMES["nonuniform"]
+    times = T
     curve = qs.build("kochanek-bartels", times, Q, **options)
     assert (curve.continuity, curve.order, curve.constant_rate) == (continuity, order, constant)
     assert (jump(curve, times[1:-1], 1) < SMOOTH) == (continuity == 1)
@@ -351,8 +338,8 @@ def test_bias_and_continuity_keep_a_constant_spin_on_uniform_knots():
 
 
 def test_full_tension_stops_at_keyframes():
-    curve = qs.build("kochanek-bartels", TIMES["nonuniform"], Q, tension=1.0)
-    assert np.abs(curve(TIMES["nonuniform"][1:-1], 1)).max() < 1e-13
+    curve = qs.build("kochanek-bartels", T, Q, tension=1.0)
+    assert np.abs(curve(T[1:-1], 1)).max() < 1e-13
 
 
 def test_shoemake_bezier_handles_and_ends():
@@ -364,7 +351,7 @@ def test_shoemake_bezier_handles_and_ends():
     np.testing.assert_allclose(ends(0.0, 1), qs.build("catmull-rom", None, Q)(0.0, 1), atol=1e-14)
     assert ends.constant_rate == "everywhere"
     with pytest.raises(ValueError, match="uniform"):
-        qs.build("shoemake-bezier", TIMES["nonuniform"], Q)
+        qs.build("shoemake-bezier", T, Q)
 
 
 PEERS = {

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import quatspline as qs
-from golden import GOLDEN
+from golden import GOLDEN, KNOTS, assert_golden
 from powers import powers
 from quatspline import quaternion
 from quatspline.families import cumulative
@@ -375,11 +375,6 @@ def floats_of(q: list[Vector]) -> np.ndarray:
 
 # -- golden numbers -----------------------------------------------------------------------------
 
-KNOTS = {
-    "uniform": "t_uniform",
-    "nonuniform": "t_nonuniform",
-    "closed": "t_closed",
-}
 CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "slerp": ("slerp", {}),
     "nielson_uniform_natural": ("nielson", {}),
@@ -393,9 +388,8 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
 def golden_curve(case: str, **more: Any) -> Any:
     name, options = CASES[case]
     knots = GOLDEN["schemes"][case]["knots"]
-    t = [float(x) for x in GOLDEN["meta"][KNOTS[knots]]]
     q = [unit(row) for row in GOLDEN["meta"]["raw_keyframes"]]
-    return qs.build(name, t, floats_of(q), closed=knots == "closed", **options, **more)
+    return qs.build(name, KNOTS[knots], floats_of(q), closed=knots == "closed", **options, **more)
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -405,11 +399,7 @@ def test_golden_numbers(case: str) -> None:
     curve = golden_curve(case, **(to_the_end if iterative else {}))
     if iterative:
         assert curve.solve_report.residual < 1e-14
-    for entry in GOLDEN["schemes"][case]["values"]:
-        x = float(entry["x"])
-        for order, name, bound in ((0, "q", 1e-14), (1, "omega", 2e-14), (2, "alpha", 2e-13)):
-            wanted = np.array([float(v) for v in entry[name]])
-            assert apart(curve(x, order), wanted) < bound, f"{name} at {x}"
+    assert_golden(curve, case, (1e-14, 2e-14, 2e-13))
 
 
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-9])

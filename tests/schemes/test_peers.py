@@ -19,8 +19,9 @@ from quatspline import quaternion, stencil
 from quatspline.catalogue import version
 from quatspline.curve import Curve
 from quatspline.instruments.continuity import jumps
-from quatspline.peers.wrapping import quiet, reflected
+from quatspline.peers.splines import reflected
 from quatspline.quaternion import FloatArray
+from quatspline.system.quiet import quiet
 from walks import apart, apart_up_to_sign, inside, loop, spin, uneven, walk
 
 pytestmark = pytest.mark.peers
@@ -240,8 +241,8 @@ def jump(curve: Curve, order: int) -> FloatArray:
     """Jumps of omega (1) or alpha (2) at the inner knots, from orientations alone."""
     knots = knots_of(curve)
     inner = knots[1:-1]
-    left = stencil.rates(curve._orientation, np.nextafter(inner, -np.inf), knots)[order - 1]
-    right = stencil.rates(curve._orientation, inner, knots)[order - 1]
+    left = stencil.rates_of(curve, np.nextafter(inner, -np.inf))[order - 1]
+    right = stencil.rates_of(curve, inner)[order - 1]
     return np.linalg.norm(left - right, axis=1)
 
 
@@ -303,8 +304,8 @@ def test_splines_own_velocity_is_not_that_of_its_curve() -> None:
     q = walk(5, 80.0)
     library = CatmullRom([UnitQuaternion.from_unit_xyzw(row[[1, 2, 3, 0]]) for row in q])
     curve = qs.build("splines-catmull-rom", None, q)
-    knots, t = knots_of(curve), np.array([1.25, 2.0])
-    body = stencil.rates(curve._orientation, t, knots)[0]
+    t = np.array([1.25, 2.0])
+    body = stencil.rates_of(curve, t)[0]
     world = quaternion.rotate(curve(t), body)
     off = np.linalg.norm(np.array([library.evaluate(x, 1) for x in t]) - world, axis=1)
     assert off[0] > 1e-4
@@ -333,7 +334,7 @@ def test_squads_leap_inside_segments_where_steps_are_large(name: str) -> None:
 def test_splines_natural_end_starts_a_spin_too_fast() -> None:
     """The end control lies halfway to the next keyframe, where a constant rate has a third."""
     curve = qs.build("splines-catmull-rom", None, spin(np.arange(6.0), (0.0, 0.0, 1.0), 0.5))
-    rate = stencil.rates(curve._orientation, np.array([0.0, 2.5]), knots_of(curve))[0]
+    rate = stencil.rates_of(curve, np.array([0.0, 2.5]))[0]
     assert np.linalg.norm(rate, axis=1) == pytest.approx([0.75, 0.5], abs=1e-7)
 
 
@@ -389,7 +390,7 @@ def test_interpolatepy_squad_c2_stops_at_every_keyframe() -> None:
     times, q = UNEVEN, walk(7, 60.0)
     curve = qs.build("interpolatepy-squad-c2", times, q)
     at_keys, between = (
-        np.linalg.norm(stencil.rates(curve._orientation, t, times)[0], axis=1)
+        np.linalg.norm(stencil.rates_of(curve, t)[0], axis=1)
         for t in (times, 0.5 * (times[1:] + times[:-1]))
     )
     assert at_keys.max() < 1e-8
@@ -444,7 +445,7 @@ def test_interpolatepy_log_has_two_backends_and_two_curves() -> None:
     t = np.array([0.6, 1.5, 2.3, 3.6])
     for sign, agree in ((np.sign(q[0, 0]), True), (-np.sign(q[0, 0]), False)):
         curve = qs.build("interpolatepy-log", None, sign * q)
-        slopes = stencil.rates(curve._orientation, t, np.arange(5.0))[0]
+        slopes = stencil.rates_of(curve, t)[0]
         assert (apart(curve(t, 1), slopes) < 1e-6) == agree
 
 
@@ -468,6 +469,6 @@ def test_interpolatepy_differences() -> None:
     t = inside(times)
     for name in ("interpolatepy-squad-c2", "interpolatepy-quaternion-spline"):
         curve = qs.build(name, times, q)
-        velocity, acceleration = stencil.rates(curve._orientation, t, times)
+        velocity, acceleration = stencil.rates_of(curve, t)
         assert apart(curve(t, 1), velocity) < 1e-5
         assert 1e-6 < apart(curve(t, 2), acceleration) < 1e-1

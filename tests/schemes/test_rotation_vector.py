@@ -1,5 +1,7 @@
 """Rotation-vector segments: rates against 40 digits, at every angle down to none."""
 
+from typing import Any
+
 import mpmath
 import numpy as np
 import pytest
@@ -9,7 +11,9 @@ from powers import kept
 from quatspline.curve import Curve
 from quatspline.families.rotation_vector import PHI, ROTATION_VECTOR, SIZE
 from quatspline.kernels.scalars import NEAR
+from quatspline.keyframes import Keyframes
 from quatspline.quaternion import FloatArray
+from quatspline.segments import SegmentCurve
 from walks import spin
 
 ACCURATE = 1e-12
@@ -18,14 +22,20 @@ SPACING = 0.5
 U = (0.0, 0.125, 0.5, 0.875, 1.0)
 
 
+class Segment(SegmentCurve):
+    """A curve of one segment with powers phi (3, 6) and base 1, whatever its keyframes."""
+
+    family = ROTATION_VECTOR
+
+    def _fit(self, keyframes: Keyframes, *, phi: Any) -> None:
+        segments = np.zeros((1, 1, SIZE))
+        segments[0, 0, 0] = 1.0
+        segments[0, 0, PHI:] = kept(phi).reshape(-1)
+        self._set_segments(segments, np.abs(phi).sum())
+
+
 def segment(phi: FloatArray) -> Curve:
-    """A curve of one segment with powers phi (3, 6) and base 1."""
-    curve = qs.build("local-quintic", [0.0, SPACING], [[1.0, 0.0, 0.0, 0.0], [0.8, 0.6, 0.0, 0.0]])
-    segments = np.zeros((1, 1, SIZE))
-    segments[0, 0, 0] = 1.0
-    segments[0, 0, PHI:] = kept(phi).reshape(-1)
-    curve._set_segments(segments, np.abs(phi).sum())
-    return curve
+    return Segment([0.0, SPACING], [[1.0, 0.0, 0.0, 0.0], [0.8, 0.6, 0.0, 0.0]], phi=phi)
 
 
 def exact(phi: FloatArray, u: float) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -9,15 +9,14 @@ import numpy as np
 import pytest
 
 import quatspline as qs
-from golden import GOLDEN
-from quatspline import quaternion, stencil
+from golden import GOLDEN, KNOTS, Q, assert_golden
+from quatspline import quaternion
 from quatspline.families import means
-from quatspline.kernels.jit import compiled
+from quatspline.kernels.values import Quat
 from quatspline.quaternion import FloatArray
-from walks import apart, apart_up_to_sign, inside, loop, spin, uneven, walk
+from smoothness import assert_joined, assert_own_rates, motion
+from walks import apart, apart_up_to_sign, inside, spin, uneven, walk
 
-Q = np.array(GOLDEN["meta"]["q"], float)
-T = np.array(GOLDEN["meta"]["t_nonuniform"], float)
 TIGHT = 1e-12
 
 
@@ -27,40 +26,12 @@ def build(times: Any, q: FloatArray, **given: Any) -> Any:
 
 def test_golden() -> None:
     golden = GOLDEN["schemes"]["buss_fillmore_natural"]
-    assert golden["knots"] == "nonuniform"
-    curve = build(T, Q)
-    for value in golden["values"]:
-        for order, kind in enumerate(("q", "omega", "alpha")):
-            wanted = np.array(value[kind], float)
-            assert apart(curve(float(value["x"]), order), wanted) < (1e-10, 1e-10, 1e-8)[order]
+    curve = build(KNOTS[golden["knots"]], Q)
+    assert_golden(curve, "buss_fillmore_natural", (1e-10, 1e-10, 1e-8))
     controls = curve.segments[0, :, :16].reshape(-1, 4, 4)
     d = np.array(golden["d"], float)
     for i, four in enumerate(controls):
         assert apart(four, d[i : i + 4]) < 1e-10
-
-
-@compiled
-def _curvature(r):
-    return means.curvature(r)
-
-
-@compiled
-def _slope(r):
-    return means._slope(r, means.curvature(r))
-
-
-def test_coefficients_in_every_range() -> None:
-    """k = (1 - x cot x)/x^2 and dk/d(x^2) against high precision, across the series' end."""
-    mpmath = pytest.importorskip("mpmath")
-    mpmath.mp.dps = 40
-    for x in (1e-8, 1e-3, 0.1, 0.3, 0.4999999, 0.5, 0.5000001, 1.0, 1.5, 2.5, 3.1):
-        r = mpmath.mpf(x) ** 2
-
-        def k(r: Any) -> Any:
-            return (1 - mpmath.sqrt(r) * mpmath.cot(mpmath.sqrt(r))) / r
-
-        assert _curvature(x * x) == pytest.approx(float(k(r)), rel=1e-13)
-        assert _slope(x * x) == pytest.approx(float(mpmath.diff(k, r, h=r * 1e-10)), rel=1e-11)
 
 
 def test_mean_solves_its_equation() -> None:
@@ -72,17 +43,16 @@ def test_mean_solves_its_equation() -> None:
             p = quaternion.mul(walk(2, 90.0)[1], quaternion.exp(v))
             w = rng.uniform(size=4)
             w /= w.sum()
-            q = np.array(means.mean(*(tuple(x) for x in p), tuple(w)))
+            q = np.array(means.mean(tuple(Quat(*x) for x in p), tuple(w)))
             left = w @ quaternion.log(quaternion.mul(quaternion.conj(q), p))
             assert np.abs(left).max() < 1e-15
             assert abs(np.linalg.norm(q) - 1.0) < 1e-15
 
 
 def case(kind: str) -> tuple[FloatArray, FloatArray, dict[str, Any]]:
-    if kind in ("natural", "clamped"):
-        return uneven(9), walk(9, 60.0), {"ends": kind}
-    knots = uneven(10)
-    return knots, loop(knots, 1 if kind == "closed -" else 2, wobble=0.4), {"closed": True}
+    ends = kind in ("natural", "clamped")
+    knots, q, given = motion("open" if ends else kind, 9, 60.0)
+    return knots, q, {"ends": kind} if ends else given
 
 
 KINDS = ["natural", "clamped", "closed +", "closed -"]
@@ -93,19 +63,8 @@ def test_rates_and_joins(kind: str) -> None:
     knots, q, given = case(kind)
     curve = build(knots, q, **given)
     assert apart(curve(knots[: len(q)]), curve.quaternions) < 1e-11
-    t = inside(knots, 6)
-    for order, wanted in enumerate(stencil.rates(curve._orientation, t, knots), start=1):
-        assert apart(curve(t, order), wanted) < (1e-8, 1e-6)[order - 1] * np.abs(wanted).max()
-    left, right = np.nextafter(knots[1:-1], -1.0), knots[1:-1]
-    for order in (1, 2):
-        size = np.abs(curve(t, order)).max()
-        assert apart(curve(left, order), curve(right, order)) < 1e-11 * size
-    if "closed" in given:
-        last = np.nextafter(knots[-1], 0.0)
-        assert apart(curve(last), curve.keyframes.sign * curve.quaternions[0]) < 1e-11
-        for order in (1, 2):
-            size = np.abs(curve(t, order)).max()
-            assert apart(curve(last, order), curve(0.0, order)) < 1e-11 * size
+    assert_own_rates(curve, inside(knots, 6), (1e-8, 1e-6))
+    assert_joined(curve)
 
 
 def test_ends() -> None:

@@ -23,12 +23,11 @@ def own_rates(curve: Curve) -> list[Row]:
     inside segments (lower is better; stencils are good to 1e-9 / h and 1e-7 / h^2); relative: its share
     of the largest rate, for accelerations at least that of a speed gained in one spacing.
     """
-    times = curve.keyframes.knots
-    u = (np.arange(SAMPLES) + 0.5) / SAMPLES
-    t = (times[:-1, None] + np.diff(times)[:, None] * u).reshape(-1)
-    truth = stencil.rates(curve._orientation, t, times)
+    keyframes = curve.keyframes
+    t = keyframes.inside(SAMPLES)
+    truth = stencil.rates(curve._orientation, t, keyframes.knots)
     speed, gain = (float(np.linalg.norm(x, axis=-1).max()) for x in truth)
-    sizes = (speed, max(gain, speed / float(np.diff(times).mean())))
+    sizes = (speed, max(gain, speed / float(keyframes.spacings.mean())))
     rows = []
     for order, quantity in RATES.items():
         own = _published(curve, t, order)

@@ -15,14 +15,14 @@ from quatspline import quaternion
 from quatspline.catalogue import build, scheme
 from quatspline.claims import own
 from quatspline.curve import Curve
-from quatspline.instruments import accuracy
+from quatspline.instruments.accuracy import inner_angle, measured_order
 from quatspline.instruments.continuity import jumps, measured_continuity, speeds
 from quatspline.instruments.fairness import fairness
 from quatspline.instruments.locality import locality, responses
 from quatspline.instruments.trials import builder
 from quatspline.quaternion import FloatArray
 from quatspline.trajectories.sets import torque_sets
-from quatspline.trajectories.smooth import INNER, SPAN, tumble
+from quatspline.trajectories.smooth import SPAN, tumble
 from quatspline.trajectories.walks import walk
 
 MANY = 41
@@ -84,17 +84,15 @@ def _miss(curve: Curve) -> float:
 
 def order(name: str, keyframes: int = 161) -> float:
     """Interior order on a smooth motion over two halvings of the spacing that end at so many keyframes."""
-    counts = [(keyframes - 1) // 4 + 1, (keyframes - 1) // 2 + 1, keyframes]
-    errors = [_inner_error(name, count) for count in counts]
-    return float(-np.polyfit(np.log(np.array(counts) - 1.0), np.log(errors), 1)[0])
+    curves = [_tumbling(name, (keyframes - 1) // halved + 1) for halved in (4, 2, 1)]
+    spacings = [curve.keyframes.spacings[0] for curve in curves]
+    return measured_order(spacings, [inner_angle(curve) for curve in curves])
 
 
-def _inner_error(name: str, count: int) -> float:
+def _tumbling(name: str, count: int) -> Curve:
+    """Through evenly spaced keyframes of the smooth motion."""
     times = np.linspace(0.0, SPAN, count)
-    t = _inside(times, accuracy.SAMPLES)
-    t = t[(t >= INNER[0]) & (t <= INNER[1])]
-    curve = builder(name)(times, tumble(times))
-    return float(quaternion.distance(curve(t), tumble(t)).max())
+    return builder(name)(times, tumble(times))
 
 
 def support(name: str, degrees: float = 30) -> int | str:
@@ -110,13 +108,14 @@ def constant_rate(name: str, degrees: float = 50, uneven: bool = False, count: i
     """
     times, _ = walked(count, degrees, uneven)
     times *= (count - 1) / times[-1]
-    t = _inside(times, SAMPLES)
 
     def spin(at: FloatArray) -> FloatArray:
         half = np.radians(degrees) / 2.0 * at[:, None]
         return quaternion.mul(quaternion.exp(OBLIQUE), quaternion.exp(half * AXIS))
 
-    off = quaternion.distance(builder(name)(times, spin(times))(t), spin(t)) / np.radians(degrees)
+    curve = builder(name)(times, spin(times))
+    t = curve.keyframes.inside(SAMPLES)
+    off = quaternion.distance(curve(t), spin(t)) / np.radians(degrees)
     inner = (t > times[EDGE]) & (t < times[-1 - EDGE])
     if off.max() <= CONSTANT:
         return "everywhere"
@@ -158,11 +157,6 @@ def _accepted(name: str, times: FloatArray, keyframes: FloatArray) -> bool:
     return bool(np.isfinite(curve(times)).all())
 
 
-def _inside(times: FloatArray, samples: int) -> FloatArray:
-    u = (np.arange(samples) + 0.5) / samples
-    return (times[:-1, None] + np.diff(times)[:, None] * u).reshape(-1)
-
-
 # -- what else is said of curves ----------------------------------------------------------------
 
 
@@ -185,10 +179,9 @@ def least_key_speed(name: str, count: int = 4, degrees: float = 60) -> float:
 
 def jump_order(name: str, keyframes: int = 81) -> float:
     """The power of the spacing that the acceleration's jump falls with, over its last halving."""
-    counts = ((keyframes - 1) // 2 + 1, keyframes)
-    grids = [np.linspace(0.0, SPAN, count) for count in counts]
-    coarse, fine = (jumps(builder(name)(t, tumble(t)), [2])["jump"].iloc[0] for t in grids)
-    return float(np.log2(coarse / fine))
+    curves = [_tumbling(name, count) for count in ((keyframes - 1) // 2 + 1, keyframes)]
+    spacings = [curve.keyframes.spacings[0] for curve in curves]
+    return measured_order(spacings, [jumps(curve, [2])["jump"].iloc[0] for curve in curves])
 
 
 def torque_ratio(name: str, other: str = "min-torque", sets: int = 6) -> float:
@@ -204,8 +197,8 @@ def _torque(name: str, times: FloatArray, keyframes: FloatArray) -> float:
 def reversal_deviation(name: str, count: int = 4, degrees: float = 60) -> float:
     """The largest angle, over the step, between a curve and that of the keyframes in reverse order."""
     times, keyframes = walked(count, degrees)
-    t = _inside(times, SAMPLES)
     forth, back = (builder(name)(times, q) for q in (keyframes, keyframes[::-1]))
+    t = forth.keyframes.inside(SAMPLES)
     apart = quaternion.distance(forth(t), back(times[-1] - t))
     return float(apart.max() / np.radians(degrees))
 
@@ -217,5 +210,5 @@ def moved_by_a_flip(name: str, count: int = 5, degrees: float = 60, **options: A
     straight = build(name, times, flipped)
     flipped[count // 2] *= -1.0
     astray = build(name, times, flipped, align=False, **options)
-    t = _inside(times, SAMPLES)
+    t = straight.keyframes.inside(SAMPLES)
     return float(np.degrees(quaternion.distance(straight(t), astray(t)).max()))

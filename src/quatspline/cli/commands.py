@@ -130,8 +130,7 @@ def _yes(claim: bool) -> str:
 
 
 def _run(arguments: argparse.Namespace) -> int:
-    from quatspline.cli import words
-    from quatspline.runs import running
+    from quatspline.cli import running, words
 
     experiments, schemes = words.of_run(arguments.experiments, arguments.schemes)
     failed = running.run(

@@ -1,6 +1,6 @@
 """Quintic polynomials on [0, 1]: how segments are made of them and how kernels evaluate them.
 
-In a sheet, six rows from p on hold one polynomial as f_0, r = f_1 - f_0 and g_0 ... g_3 of
+Six constants hold one polynomial as f_0, r = f_1 - f_0 and g_0 ... g_3 of
 
     f(u) = f_0 + r u + u (1 - u) g(u),    g(u) = g_0 + g_1 u + g_2 u^2 + g_3 u^3                   (1)
 
@@ -42,24 +42,21 @@ def bound(f0, rise, g0, g1, g2, g3):
 
 
 @inlined
-def quintic(s, p, j, u):
-    """(1) at u."""
-    g = ((s[p + 5, j] * u + s[p + 4, j]) * u + s[p + 3, j]) * u + s[p + 2, j]
-    return (u - u * u) * g + (s[p + 1, j] * u + s[p, j])
+def quintic(c, p, u):
+    """(1) at u, its constants at places p ... p + 5."""
+    g = ((c[p + 5] * u + c[p + 4]) * u + c[p + 3]) * u + c[p + 2]
+    return (u - u * u) * g + (c[p + 1] * u + c[p])
 
 
 @inlined
-def quintic_jet(s, p, j, u):
+def quintic_jet(c, p, u):
     """(1) and its two derivatives at u."""
-    d, c, b, a = s[p + 2, j], s[p + 3, j], s[p + 4, j], s[p + 5, j]
-    g, g1, g2 = (
-        ((a * u + b) * u + c) * u + d,
-        (3.0 * a * u + 2.0 * b) * u + c,
-        6.0 * a * u + 2.0 * b,
-    )
-    w, w1, rise = u - u * u, 1.0 - 2.0 * u, s[p + 1, j]
+    a, b, d, e = c[p + 2], c[p + 3], c[p + 4], c[p + 5]
+    g, g1 = ((e * u + d) * u + b) * u + a, (3.0 * e * u + 2.0 * d) * u + b
+    g2 = 6.0 * e * u + 2.0 * d
+    w, w1, rise = u - u * u, 1.0 - 2.0 * u, c[p + 1]
     return (
-        w * g + (rise * u + s[p, j]),
+        w * g + (rise * u + c[p]),
         w * g1 + (w1 * g + rise),
         w * g2 + 2.0 * (w1 * g1 - g),
     )

@@ -9,9 +9,8 @@ import numpy as np
 
 from quatspline.curve import Curve
 from quatspline.figures import style
-from quatspline.instruments.derivatives import shape_rates
+from quatspline.instruments.derivatives import rates_since
 from quatspline.keyframes import Keyframes
-from quatspline.quaternion import FloatArray
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -40,11 +39,11 @@ def bars(table: pd.DataFrame) -> Figure:
 def rates(curves: Mapping[str, Curve], keyframes: Keyframes) -> Figure:
     """Norms of angular velocity and acceleration over time of the curves that were measured, by name."""
     fig, panels = style.axes(style.PAGE, 3.6, 2, 1, sharex=True)
-    t = _times(keyframes)
+    t = keyframes.inside(max(2, SAMPLES // len(keyframes.spacings)))  # some rates jump at keyframes
     for name, curve in curves.items():
         looks = style.scheme_style(name) | {"marker": ""}
-        for ax, rate in zip(panels[:, 0], shape_rates(curve, t), strict=True):
-            ax.plot(t - t[0], np.linalg.norm(rate, axis=-1), label=name, **looks)
+        for ax, rate in zip(panels[:, 0], rates_since(curve, t), strict=True):
+            ax.plot(t, np.linalg.norm(rate, axis=-1), label=name, **looks)
     for ax, label in zip(
         panels[:, 0], (r"$|\omega|$ (rad/t)", r"$|\alpha|$ (rad/t$^2$)"), strict=True
     ):
@@ -56,11 +55,3 @@ def rates(curves: Mapping[str, Curve], keyframes: Keyframes) -> Figure:
     if curves:
         style.legend_of(fig, panels[0, 0], CURVES)
     return fig
-
-
-def _times(keyframes: Keyframes) -> FloatArray:
-    """Samples away from knots, where rates of some schemes jump."""
-    each = max(2, SAMPLES // len(keyframes.spacings))
-    u = (np.arange(each) + 0.5) / each
-    inner = keyframes.times[:-1, None] + keyframes.spacings[:, None] * u
-    return inner.reshape(-1)

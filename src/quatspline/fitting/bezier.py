@@ -21,29 +21,17 @@ import numpy as np
 from quatspline.families.arcs import SIZE as ARC
 from quatspline.families.arcs import set_arc
 from quatspline.families.nested import set_parameter
-from quatspline.fitting.tangents import end_velocity, keyframe, moved, step
+from quatspline.fitting.tangents import end_velocity, step
 from quatspline.kernels.jit import REACH, compiled, fit_kernel
+from quatspline.kernels.values import exp, keyframe, put_vec, vec_at
 
 
 @compiled
-def set_controls(segments, i, p0, p1, p2, p3):
-    """Store De Casteljau's arcs on four controls as constants of segment i (`nested.TRIANGLE`)."""
-    r0 = set_arc(segments, i, 0, p0[0], p0[1], p0[2], p0[3], p1[0], p1[1], p1[2], p1[3])
-    r1 = set_arc(segments, i, ARC, p1[0], p1[1], p1[2], p1[3], p2[0], p2[1], p2[2], p2[3])
-    r2 = set_arc(segments, i, 2 * ARC, p2[0], p2[1], p2[2], p2[3], p3[0], p3[1], p3[2], p3[3])
+def set_controls(c, p0, p1, p2, p3):
+    """Store De Casteljau's arcs on four controls as a segment's constants (`nested.TRIANGLE`)."""
     for k in range(6):
-        set_parameter(segments, i, k, 0.0, 1.0)
-    return max(r0, r1, r2)
-
-
-@compiled
-def set_bezier(segments, i, q, sign, h, v, w):
-    """(1): segment i, leaving with v and arriving with w."""
-    p0, p3 = keyframe(q, i, sign), keyframe(q, i + 1, sign)
-    k = h / 3.0
-    p1 = moved(p0, k * v[0], k * v[1], k * v[2])
-    p2 = moved(p3, -k * w[0], -k * w[1], -k * w[2])
-    return set_controls(segments, i, p0, p1, p2, p3)
+        set_parameter(c, k, 0.0, 1.0)
+    return max(set_arc(c, 0, p0, p1), set_arc(c, ARC, p1, p2), set_arc(c, 2 * ARC, p2, p3))
 
 
 @compiled
@@ -53,17 +41,17 @@ def _blend(q, h, sign, i, tension, continuity, bias, v):
     a, b = step(q, i - 1, i, sign), step(q, i, i + 1, sign)
     before, after = h[(i - 1) % n], h[i % n]
     k = (1.0 - tension) / (before + after)
-    left, right = k * (1.0 + bias) * after / before, k * (1.0 - bias) * before / after
-    for c in range(3):
-        v[0, c] = (1.0 + continuity) * left * a[c] + (1.0 - continuity) * right * b[c]
-        v[1, c] = (1.0 - continuity) * left * a[c] + (1.0 + continuity) * right * b[c]
+    left = (k * (1.0 + bias) * after / before) * a
+    right = (k * (1.0 - bias) * before / after) * b
+    put_vec(v[0], 0, (1.0 + continuity) * left + (1.0 - continuity) * right)
+    put_vec(v[1], 0, (1.0 - continuity) * left + (1.0 + continuity) * right)
 
 
-@fit_kernel
-def FIT(q, h, closed, sign, parameters, segments, report):
-    """Kochanek-Bartels segments; parameters: ends, then (or all 0) T, C, B by keyframe."""
+@compiled
+def _velocities(q, h, closed, sign, parameters):
+    """v_i^out and v_i^in of every keyframe, (n, 2, 3)."""
     n, plain = q.shape[0], parameters.size == 1
-    v, time, x = np.empty((n, 2, 3)), np.empty(5), np.empty((5, 3))
+    v, chart = np.empty((n, 2, 3)), np.empty((5, 4))
     for i in range(n):
         if closed or 0 < i < n - 1:
             t, c, b = 0.0, 0.0, 0.0
@@ -71,9 +59,19 @@ def FIT(q, h, closed, sign, parameters, segments, report):
                 t, c, b = parameters[1 + i], parameters[1 + n + i], parameters[1 + 2 * n + i]
             _blend(q, h, sign, i, t, c, b, v[i])
         else:
-            end = end_velocity(q, h, i, 3, parameters[0], time, x)
-            v[i, 0, 0], v[i, 0, 1], v[i, 0, 2] = end
+            put_vec(v[i, 0], 0, end_velocity(q, h, i, 3, parameters[0], chart))
             v[i, 1] = v[i, 0]
+    return v
+
+
+@fit_kernel
+def FIT(q, h, closed, sign, parameters, segments, report):
+    """Kochanek-Bartels segments by (1); parameters: ends, then (or all 0) T, C, B by keyframe."""
+    v = _velocities(q, h, closed, sign, parameters)
+    reach = 0.0
     for i in range(h.size):
-        j = (i + 1) % n
-        report[REACH] = max(report[REACH], set_bezier(segments, i, q, sign, h[i], v[i, 0], v[j, 1]))
+        q0, q1 = keyframe(q, i, sign), keyframe(q, i + 1, sign)
+        b = q0 * exp((h[i] / 3.0) * vec_at(v[i, 0], 0))
+        c = q1 * exp((-h[i] / 3.0) * vec_at(v[(i + 1) % q.shape[0], 1], 0))
+        reach = max(reach, set_controls(segments[i], q0, b, c, q1))
+    report[REACH] = reach

@@ -26,71 +26,23 @@ import numpy as np
 
 from quatspline.families.cumulative import set_base, set_factor
 from quatspline.fitting.tangents import chart_velocity
+from quatspline.kernels.jacobians import inverse_right_jacobian
 from quatspline.kernels.jit import compiled, inlined
-from quatspline.kernels.scalars import NEAR, between, cross, log, log_between, mul, sinc, sinc_near
+from quatspline.kernels.values import (
+    exp,
+    keyframe,
+    log,
+    put_vec_column,
+    quat_column,
+    vec,
+    vec_column,
+)
 
 WINDOW = 4
 """Keyframes in the chart estimate of an end velocity: one more than the curve's order."""
 
 ROUNDING = 1e-14
 """Half angles below this are rounding."""
-
-
-@inlined
-def increment(w, j):
-    """Column j of increments (3, N + 2)."""
-    return w[0, j], w[1, j], w[2, j]
-
-
-@inlined
-def control(d, k):
-    """Column k of quaternions (4, N + 1)."""
-    return d[0, k], d[1, k], d[2, k], d[3, k]
-
-
-@inlined
-def set_control(d, k, w, x, y, z):
-    """Write column k of quaternions (4, N + 1)."""
-    d[0, k], d[1, k], d[2, k], d[3, k] = w, x, y, z
-
-
-@inlined
-def keyframe(q, i):
-    """Keyframe i of (n, 4)."""
-    return q[i, 0], q[i, 1], q[i, 2], q[i, 3]
-
-
-@compiled
-def turned(f, w):
-    """exp(f w)."""
-    x, y, z = f * w[0], f * w[1], f * w[2]
-    n = x * x + y * y + z * z
-    if n < NEAR * NEAR:
-        s, c = sinc_near(n)
-    else:
-        s, c = sinc(n)
-    return c, s * x, s * y, s * z
-
-
-@compiled
-def _far_log(w, x, y, z):
-    return log(w, x, y, z)
-
-
-@inlined
-def small_log(w, x, y, z):
-    """The logarithm, by its series where that is exact to rounding."""
-    n = x * x + y * y + z * z
-    if w > 0.0 and n < 1e-3:
-        f = 1.0 + n * (1 / 6 + n * (3 / 40 + n * (15 / 336 + n * (105 / 3456))))
-        return f * x, f * y, f * z
-    return _far_log(w, x, y, z)
-
-
-@inlined
-def squared(v):
-    """|v|^2."""
-    return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
 
 
 @inlined
@@ -139,27 +91,13 @@ def middle(h1, h2, h3, after):
     return c0, c1, c2, 1.0 - after - c0 - c1 - c2
 
 
-@inlined
-def blending(h0, h1, h2, h3, h4, u):
-    """B_{i-1} ... B_{i+2} at u on [t_i, t_{i+1}], from h_{i-2} ... h_{i+2}."""
-    c0, c1, c2, c3 = middle(h1, h2, h3, weight_before(h1, h2, h3))
-    v = 1.0 - u
-    first = weight_before(h0, h1, h2) * v * v * v
-    last = weight_after(h2, h3, h4) * u * u * u
-    inner = ((c3 * u + c2) * u + c1) * u + c0
-    return first, 1.0 - first - inner, inner - last, last
-
-
 @compiled
-def set_segment(segments, i, base, x, y, z, m0, coefficients, p1):
-    """Constants of (1) for segment i: base d_{i-1}, increments x, y, z; returns the reach."""
-    c0, c1, c2, c3 = coefficients
-    set_base(segments, i, base[0], base[1], base[2], base[3])
-    first = set_factor(
-        segments, i, 0, x[0], x[1], x[2], 1.0 - m0, 3.0 * m0, -3.0 * m0, m0, 0.0, 0.0
-    )
-    second = set_factor(segments, i, 1, y[0], y[1], y[2], c0, c1, c2, c3, 0.0, 0.0)
-    third = set_factor(segments, i, 2, z[0], z[1], z[2], 0.0, 0.0, 0.0, p1, 0.0, 0.0)
+def set_segment(c, base, x, y, z, m0, coefficients, p1):
+    """Constants of (1): base d_{i-1}, increments x, y, z; returns the reach."""
+    set_base(c, base)
+    first = set_factor(c, 0, x, (1.0 - m0, 3.0 * m0, -3.0 * m0, m0, 0.0, 0.0))
+    second = set_factor(c, 1, y, (*coefficients, 0.0, 0.0))
+    third = set_factor(c, 2, z, (0.0, 0.0, 0.0, p1, 0.0, 0.0))
     return max(first, second, third)
 
 
@@ -167,35 +105,16 @@ def set_segment(segments, i, base, x, y, z, m0, coefficients, p1):
 def set_phantoms(w, closed, clamped):
     """w_0 and w_{N+1} from the others: wrapped, or repeated; a clamped curve's are given."""
     n = w.shape[1] - 2
-    for c in range(3):
-        if closed:
-            w[c, 0], w[c, n + 1] = w[c, n], w[c, 1]
-        elif not clamped:
-            w[c, 0], w[c, n + 1] = w[c, 1], w[c, n]
+    if closed or not clamped:
+        put_vec_column(w, 0, vec_column(w, n if closed else 1))
+        put_vec_column(w, n + 1, vec_column(w, 1 if closed else n))
 
 
 @compiled
 def increments(d, w):
     """w_j = ln(d_{j-1}^-1 d_j), j = 1 ... N."""
     for j in range(1, d.shape[1]):
-        w[0, j], w[1, j], w[2, j] = log_between(*control(d, j - 1), *control(d, j))
-
-
-@inlined
-def _following(whole, w, gap):
-    """Jr(2 w)^-1 gap: what w gains when whole = exp(w) is followed by a small turn."""
-    n = squared(w)
-    side = cross(*w, *gap)
-    bend = cross(*w, *side)
-    f = 1.0 / 3.0 + n / 45.0
-    if n > 1e-4:
-        length = math.sqrt(n)
-        f = (1.0 - length * whole[0] / math.sin(length)) / n
-    return (
-        gap[0] + side[0] + f * bend[0],
-        gap[1] + side[1] + f * bend[1],
-        gap[2] + side[2] + f * bend[2],
-    )
+        put_vec_column(w, j, log(~quat_column(d, j - 1) * quat_column(d, j)))
 
 
 @compiled
@@ -208,23 +127,19 @@ def tie(d, w):
     """
     worst = 0.0
     for j in range(1, d.shape[1]):
-        whole = turned(1.0, increment(w, j))
-        gap = small_log(*between(*whole, *between(*control(d, j - 1), *control(d, j))))
-        worst = max(worst, squared(gap))
-        if squared(gap) > ROUNDING * ROUNDING:
-            x, y, z = _following(whole, increment(w, j), gap)
-            w[0, j] += x
-            w[1, j] += y
-            w[2, j] += z
+        step = vec_column(w, j)
+        gap = log(~exp(step) * (~quat_column(d, j - 1) * quat_column(d, j)))
+        worst = max(worst, gap @ gap)
+        if gap @ gap > ROUNDING * ROUNDING:
+            put_vec_column(w, j, step + inverse_right_jacobian(step, gap))
     return math.sqrt(worst)
 
 
 @inlined
-def _miss(base, turn, q, i, sign):
-    """|vec| squared of (base turn)^-1 q_i; 1 where they are more than half a turn apart."""
-    w, x, y, z = mul(*base, *turn)
-    w, x, y, z = between(w, x, y, z, sign * q[i, 0], sign * q[i, 1], sign * q[i, 2], sign * q[i, 3])
-    return x * x + y * y + z * z if w > 0.0 else 1.0
+def _miss(p, q):
+    """|vec| squared of ~p q; 1 where they are more than half a turn apart."""
+    miss = ~p * q
+    return vec(miss) @ vec(miss) if miss.w > 0.0 else 1.0
 
 
 @compiled
@@ -234,25 +149,24 @@ def write_segments(q, h, closed, clamped, sign, d, w, segments):
     Returns (reach, residual): the largest half angle that a sample meets, and the largest miss
     at a keyframe in rad, taken on both of its sides with the constants that were written.
     """
-    n = h.size
     reach = worst = 0.0
     set_phantoms(w, closed, clamped)
-    x, y = increment(w, 0), increment(w, 1)
-    base = mul(*control(d, 0), *turned(-1.0, x))
+    x, y = vec_column(w, 0), vec_column(w, 1)
+    base = quat_column(d, 0) * exp(-x)
     h1, h2, h3 = spacing(h, -1, closed, clamped), h[0], spacing(h, 1, closed, clamped)
     m0 = weight_before(spacing(h, -2, closed, clamped), h1, h2)
-    turn = mul(*turned(1.0 - m0, x), *turned(weight_after(h1, h2, h3), y))
-    for i in range(n):
+    turn = exp((1.0 - m0) * x) * exp(weight_after(h1, h2, h3) * y)
+    for i in range(h.size):
         h4 = spacing(h, i + 2, closed, clamped)
         m1, p1 = weight_before(h1, h2, h3), weight_after(h2, h3, h4)
-        z = increment(w, i + 2)
-        reach = max(reach, set_segment(segments, i, base, x, y, z, m0, middle(h1, h2, h3, m1), p1))
-        worst = max(worst, _miss(base, turn, q, i, 1.0))
-        whole = mul(*base, *turned(1.0, x))
-        turn = mul(*turned(1.0 - m1, y), *turned(p1, z))
-        last = closed and i == n - 1
-        worst = max(worst, _miss(whole, turn, q, 0 if last else i + 1, sign if last else 1.0))
-        base = control(d, i)
+        z = vec_column(w, i + 2)
+        reach = max(reach, set_segment(segments[i], base, x, y, z, m0, middle(h1, h2, h3, m1), p1))
+        start = base * turn
+        turn = exp((1.0 - m1) * y) * exp(p1 * z)
+        end = base * exp(x) * turn
+        worst = max(worst, _miss(start, keyframe(q, i, sign)))
+        worst = max(worst, _miss(end, keyframe(q, i + 1, sign)))
+        base = quat_column(d, i)
         h1, h2, h3, m0, x, y = h2, h3, h4, m1, y, z
     return reach, 2.0 * math.asin(min(1.0, math.sqrt(worst)))
 
@@ -260,5 +174,5 @@ def write_segments(q, h, closed, clamped, sign, d, w, segments):
 @inlined
 def end_velocity(q, h, at_end):
     """Chart estimate of q^-1 q' at an end of an open curve, from the last WINDOW keyframes."""
-    time, x = np.empty(5), np.empty((5, 3))
-    return chart_velocity(q, h, False, 1.0, q.shape[0] - 1 if at_end else 0, WINDOW, time, x)
+    i = q.shape[0] - 1 if at_end else 0
+    return chart_velocity(q, h, False, 1.0, i, WINDOW, np.empty((5, 4)))

@@ -11,10 +11,19 @@ import math
 import numpy as np
 
 from quatspline.fitting.block_tridiagonal import workspace
-from quatspline.fitting.bspline import control, increments, set_control, tie, turned
+from quatspline.fitting.bspline import increments, tie
 from quatspline.fitting.bspline_rows import assemble, look
 from quatspline.kernels.jit import compiled, inlined
-from quatspline.kernels.scalars import log_between, mul
+from quatspline.kernels.values import (
+    exp,
+    log,
+    put_quat_column,
+    put_vec,
+    put_vec_column,
+    quat_column,
+    vec_at,
+    vec_column,
+)
 
 CAP = 0.8
 """Largest half angle by which one Newton update may turn an increment."""
@@ -51,9 +60,9 @@ def copy(source, target, factor):
 def moved(d, old, count):
     """Relative change of the first count controls."""
     total = 0.0
-    for c in range(4):
-        for k in range(count):
-            total += (d[c, k] - old[c, k]) ** 2
+    for k in range(count):
+        change = quat_column(d, k) - quat_column(old, k)
+        total += change @ change
     return math.sqrt(total / count)
 
 
@@ -73,16 +82,16 @@ def descend(problem, w, controls, tolerance, by_change, limit):
         if not longest < math.inf:
             break
         length, before, known = min(1.0, CAP / longest), total, worst
-        shift(w, move, length)
+        shift(w, move, length, 1)
         while True:
             total, worst = look(problem, w, controls[1 - side], jets, work[3])
             if total <= (1.0 - 2.0 * ARMIJO * length) * before or worst <= ROUNDING:
                 break
             length *= 0.5
             if not length >= SHORTEST:
-                shift(w, move, -2.0 * length)
+                shift(w, move, -2.0 * length, 1)
                 return updates, known, change, False, side
-            shift(w, move, -length)
+            shift(w, move, -length, 1)
         side, updates = 1 - side, updates + 1
         change = moved(controls[side], controls[1 - side], n if cyclic else n + 1)
         met = change <= tolerance if by_change else worst <= tolerance
@@ -96,19 +105,18 @@ def keep(x, move):
     """Copy Newton's move; returns its longest vector, infinite where one is not finite."""
     longest, doubt = 0.0, 0.0
     for k in range(x.shape[0]):
-        move[k, 0], move[k, 1], move[k, 2] = x[k, 0], x[k, 1], x[k, 2]
-        size = x[k, 0] ** 2 + x[k, 1] ** 2 + x[k, 2] ** 2
-        longest = max(longest, size)
-        doubt += 0.0 * size
+        step = vec_at(x[k], 0)
+        put_vec(move[k], 0, step)
+        longest = max(longest, step @ step)
+        doubt += 0.0 * (step @ step)
     return math.sqrt(longest) if doubt == 0.0 else math.inf
 
 
 @inlined
-def shift(w, move, length):
-    """w + length move, in place."""
+def shift(w, move, length, first):
+    """Columns of w from the first on, moved by a length of the move."""
     for k in range(move.shape[0]):
-        for c in range(3):
-            w[c, k + 1] += length * move[k, c]
+        put_vec_column(w, k + first, vec_column(w, k + first) + length * vec_at(move[k], 0))
 
 
 @compiled
@@ -153,11 +161,11 @@ def ease(targets, share, eased, w):
 
     Only steps count in (2), so that the end of a closed chain need not be its start.
     """
-    set_control(eased, 0, *control(targets, 0))
+    put_quat_column(eased, 0, quat_column(targets, 0))
     for k in range(targets.shape[1] - 1):
-        x, y, z = log_between(*control(targets, k), *control(targets, k + 1))
-        w[0, k + 1], w[1, k + 1], w[2, k + 1] = share * x, share * y, share * z
-        set_control(eased, k + 1, *mul(*control(eased, k), *turned(share, (x, y, z))))
+        step = share * log(~quat_column(targets, k) * quat_column(targets, k + 1))
+        put_vec_column(w, k + 1, step)
+        put_quat_column(eased, k + 1, quat_column(eased, k) * exp(step))
 
 
 @compiled

@@ -14,18 +14,15 @@ import math
 
 import numpy as np
 
-from quatspline.families.polynomials import quintic_jet
 from quatspline.families.rotation_vector import (
-    PHI,
     SIZE,
-    coefficients,
     half_acceleration,
-    inverse_jacobian,
-    set_base,
+    jet,
     set_end_rates,
 )
+from quatspline.kernels.jacobians import coefficients, inverse_jacobian_matrix
 from quatspline.kernels.jit import CHANGE, ITERATIONS, REACH, compiled, inlined
-from quatspline.kernels.scalars import exp, log_between, mul, sinc
+from quatspline.kernels.values import Quat, exp, log, put_quat, put_vec, quat_at, unit, vec_at
 
 # notation: log units; a node has q (4) and x = (v, a) (6), half the body velocity and acceleration;
 # y (15) holds a segment's L, h v_0, h^2 a_0, h v_1, h^2 a_1
@@ -69,11 +66,11 @@ def minimise(nodes, rates, h, m, tolerance, limit, segments, report):
     energies, rest = np.empty(nodes.shape[0]), np.empty(nodes.shape[0], dtype=np.bool_)
     for k in range(nodes.shape[0]):
         energies[k], rest[k] = _minimise(nodes[k], rates[k], h, m, tolerance, limit, report[k])
+        y, reach = np.empty(15), 0.0
         for i in range(h.size):
-            q, y = nodes[k, i], np.empty(15)
             _ends(nodes[k], rates[k], h, i, y)
-            set_base(segments[k], i, q[0], q[1], q[2], q[3])
-            report[k, REACH] = max(report[k, REACH], set_end_rates(segments[k], i, y))
+            reach = max(reach, _set_segment(segments[k, i], quat_at(nodes[k, i], 0), y))
+        report[k, REACH] = reach
     return energies, rest
 
 
@@ -123,36 +120,34 @@ def _minimise(q, x, h, m, tolerance, limit, report):
 @inlined
 def _ends(q, x, h, i, y):
     """y of segment i."""
-    a, b, k = q[i], q[i + 1], h[i]
-    y[0], y[1], y[2] = log_between(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3])
-    for c in range(3):
-        y[3 + c], y[6 + c] = k * x[i, c], k * k * x[i, 3 + c]
-        y[9 + c], y[12 + c] = k * x[i + 1, c], k * k * x[i + 1, 3 + c]
+    k = h[i]
+    put_vec(y, 0, log(~quat_at(q[i], 0) * quat_at(q[i + 1], 0)))
+    put_vec(y, 3, k * vec_at(x[i], 0))
+    put_vec(y, 6, (k * k) * vec_at(x[i], 3))
+    put_vec(y, 9, k * vec_at(x[i + 1], 0))
+    put_vec(y, 12, (k * k) * vec_at(x[i + 1], 3))
+
+
+@inlined
+def _set_segment(c, q, y):
+    step, v0, a0, v1, a1 = vec_at(y, 0), vec_at(y, 3), vec_at(y, 6), vec_at(y, 9), vec_at(y, 12)
+    return set_end_rates(c, q, step, v0, a0, v1, a1)
 
 
 @compiled
 def _residuals(y, h, scratch, r):
     """sqrt(w_g h) alpha(u_g) of a segment, r (24,)."""
-    set_end_rates(scratch, 0, y)
-    f = scratch[0, PHI:].copy().reshape(3, 6).T
-    p, d, e = np.empty(3), np.empty(3), np.empty(3)
+    _set_segment(scratch, Quat(1.0, 0.0, 0.0, 0.0), y)
     for g in range(POINTS.size):
-        u = POINTS[g]
-        for c in range(3):
-            p[c], d[c], e[c] = quintic_jet(f, 0, c, u)
-        z = p[0] * p[0] + p[1] * p[1] + p[2] * p[2]
-        s, c0 = sinc(z)
-        a, b, a1, b1 = coefficients(z, s, c0)
+        phi, d, e = jet(scratch, POINTS[g])
         k = 2.0 * math.sqrt(WEIGHTS[g] / (h * h * h))
-        x = half_acceleration(a, b, a1, b1, p[0], p[1], p[2], d[0], d[1], d[2], e[0], e[1], e[2])
-        for c in range(3):
-            r[3 * g + c] = k * x[c]
+        put_vec(r, 3 * g, k * half_acceleration(coefficients(phi @ phi), phi, d, e))
 
 
 @compiled
 def _energy(q, x, h):
     """(1)."""
-    y, r, scratch = np.empty(15), np.empty(24), np.empty((1, SIZE))
+    y, r, scratch = np.empty(15), np.empty(24), np.empty(SIZE)
     total = 0.0
     for i in range(h.size):
         _ends(q, x, h, i, y)
@@ -166,7 +161,7 @@ def _normal_equations(q, x, h, m, matrix, gradient):
     """J^T J, row i and column i - d at [i, d], and -J^T r; the turns of keyframes are fixed."""
     matrix.fill(0.0)
     gradient.fill(0.0)
-    y, r, scratch = np.empty(15), np.empty(24), np.empty((1, SIZE))
+    y, r, scratch = np.empty(15), np.empty(24), np.empty(SIZE)
     jacobian = np.empty((BAND, 24))
     for i in range(h.size):
         _ends(q, x, h, i, y)
@@ -198,13 +193,13 @@ def _jacobian(y, h, scratch, jacobian):
             _residuals(y, h, scratch, r)
             by_y[c] += SHARES[k] * r
         y[c] = keep
+    # dL = Jr(L)^-1 d(turn of the second) - Jr(-L)^-1 d(turn of the first)
+    first = inverse_jacobian_matrix(-vec_at(y, 0))
+    second = inverse_jacobian_matrix(vec_at(y, 0))
     for c in range(3):
-        # dL = Jr^-1(2 L) d(turn of the second), -Jr^-1(-2 L) d(turn of the first)
-        e0, e1, e2 = 1.0 * (c == 0), 1.0 * (c == 1), 1.0 * (c == 2)
-        a = inverse_jacobian(-y[0], -y[1], -y[2], e0, e1, e2)
-        b = inverse_jacobian(y[0], y[1], y[2], e0, e1, e2)
-        jacobian[c] = -(a[0] * by_y[0] + a[1] * by_y[1] + a[2] * by_y[2])
-        jacobian[9 + c] = b[0] * by_y[0] + b[1] * by_y[1] + b[2] * by_y[2]
+        a, b = first[c], second[c]
+        jacobian[c] = -(a.x * by_y[0] + a.y * by_y[1] + a.z * by_y[2])
+        jacobian[9 + c] = b.x * by_y[0] + b.y * by_y[1] + b.z * by_y[2]
         jacobian[3 + c], jacobian[6 + c] = h * by_y[3 + c], h * h * by_y[6 + c]
         jacobian[12 + c], jacobian[15 + c] = h * by_y[9 + c], h * h * by_y[12 + c]
 
@@ -240,18 +235,12 @@ def _move(q, x, h, step, new_q, new_x):
     """Nodes after a step; returns its relative change, rates counted per segment and q as 1."""
     moved, size = 0.0, float(q.shape[0])
     for i in range(q.shape[0]):
-        k = h[min(i, h.size - 1)]
-        s = step[9 * i : 9 * i + 9]
-        e = exp(s[0], s[1], s[2])
-        a = mul(q[i, 0], q[i, 1], q[i, 2], q[i, 3], e[0], e[1], e[2], e[3])
-        norm = math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2] + a[3] * a[3])
-        for c in range(4):
-            new_q[i, c] = a[c] / norm
-        for c in range(3):
-            new_x[i, c] = x[i, c] + s[3 + c]
-            new_x[i, 3 + c] = x[i, 3 + c] + s[6 + c]
-            v, w = k * s[3 + c], k * k * s[6 + c]
-            moved += s[c] * s[c] + v * v + w * w
-            v, w = k * new_x[i, c], k * k * new_x[i, 3 + c]
-            size += v * v + w * w
+        k, s = h[min(i, h.size - 1)], step[9 * i : 9 * i + 9]
+        turn, dv, da = vec_at(s, 0), vec_at(s, 3), vec_at(s, 6)
+        v, a = vec_at(x[i], 0) + dv, vec_at(x[i], 3) + da
+        put_quat(new_q[i], 0, unit(quat_at(q[i], 0) * exp(turn)))
+        put_vec(new_x[i], 0, v)
+        put_vec(new_x[i], 3, a)
+        moved += turn @ turn + k * k * (dv @ dv + k * k * (da @ da))
+        size += k * k * (v @ v + k * k * (a @ a))
     return math.sqrt(moved / size)

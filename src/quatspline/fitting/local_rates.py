@@ -14,7 +14,8 @@ import math
 import numpy as np
 
 from quatspline.kernels.jit import inlined
-from quatspline.kernels.scalars import TINY, between
+from quatspline.kernels.scalars import TINY, arctan_series
+from quatspline.kernels.values import Vec, keyframe, put_quat, quat_at, vec_at
 
 # notation: log units throughout (half rotation vectors), h_j spacings, m the window, v and a the
 # velocity and the acceleration at a keyframe
@@ -22,12 +23,6 @@ from quatspline.kernels.scalars import TINY, between
 START, STOP = math.radians(240) / 2, math.radians(340) / 2
 """Half angles away from a keyframe between which a window gives way to the next smaller one: the
 chart folds at a full turn, and a window cut off at once would make the curve jump with its data."""
-
-# atan(x)/x = 1 + A1 x^2 + A2 x^4 + ... for |x| <= tan(pi/8), near-minimax (Chebyshev nodes,
-# computed in 50 digits): error 7e-18
-A1, A2, A3, A4 = -0.3333333333333333, 0.1999999999999552, -0.14285714284666542, 0.11111111015256361
-A5, A6, A7, A8 = -0.09090904578123903, 0.07692183190826087, -0.06664511447381948, 0.0585814891280221
-A9, A10, A11 = -0.0508544973794026, 0.03923165829558719, -0.01917688711906226
 
 
 @inlined
@@ -41,10 +36,7 @@ def log_scale(w, l2):
     g = 1.0 / (math.sqrt(w * w + l2) + abs(w))  # tan(theta/2) / l
     t = length * g
     g = g / (1.0 + math.sqrt(1.0 + t * t))  # tan(theta/4) / l
-    s = l2 * g * g
-    p = ((((A11 * s + A10) * s + A9) * s + A8) * s + A7) * s + A6
-    p = ((((p * s + A5) * s + A4) * s + A3) * s + A2) * s + A1
-    scale = 4.0 * (g * (p * s) + g)
+    scale = 4.0 * (g * arctan_series(l2 * g * g) + g)
     theta = length * scale
     if w < 0.0:
         return math.pi / (length + TINY) - scale, math.pi - theta
@@ -55,14 +47,11 @@ def log_scale(w, l2):
 def continued(q, h, closed, sign, m):
     """Keyframes and spacings with, closed, m more on either side, so that no index wraps."""
     pad = m if closed else 0
-    n = q.shape[0]
-    points, gaps = np.empty((n + 2 * pad, 4)), np.empty(h.size + 2 * pad)
+    points, gaps = np.empty((q.shape[0] + 2 * pad, 4)), np.empty(h.size + 2 * pad)
     for i in range(gaps.size):
         gaps[i] = h[(i - pad) % h.size]
     for i in range(points.shape[0]):
-        s = sign if ((i - pad) // n) % 2 == 1 else 1.0
-        for c in range(4):
-            points[i, c] = s * q[(i - pad) % n, c]
+        put_quat(points[i], 0, keyframe(q, i - pad, sign))
     return points, gaps
 
 
@@ -70,14 +59,10 @@ def continued(q, h, closed, sign, m):
 def chords(q, result):
     """ln(q_i^-1 q_{i+k}) into result (m, 4, n): x, y, z and the length, k = 1 ... m."""
     for k in range(1, min(result.shape[0] + 1, q.shape[0])):
+        x, y, z, length = result[k - 1, 0], result[k - 1, 1], result[k - 1, 2], result[k - 1, 3]
         inside = q.shape[0] - k
-        x, y, z = result[k - 1, 0], result[k - 1, 1], result[k - 1, 2]
-        length = result[k - 1, 3]
-        p, r = q[:inside], q[k:]
         for i in range(inside):
-            length[i], x[i], y[i], z[i] = between(
-                p[i, 0], p[i, 1], p[i, 2], p[i, 3], r[i, 0], r[i, 1], r[i, 2], r[i, 3]
-            )
+            length[i], x[i], y[i], z[i] = ~quat_at(q[i], 0) * quat_at(q[i + k], 0)
         _logs(length[:inside], x, y, z)
 
 
@@ -85,20 +70,15 @@ def chords(q, result):
 def _logs(w, x, y, z):
     """The logarithms of (w, x, y, z) in place, their lengths for w; the loop vectorises."""
     for i in range(w.size):
-        l2 = x[i] * x[i] + y[i] * y[i] + z[i] * z[i]
-        scale, theta = log_scale(w[i], l2)
-        x[i] *= scale
-        y[i] *= scale
-        z[i] *= scale
-        w[i] = theta
+        v = Vec(x[i], y[i], z[i])
+        scale, w[i] = log_scale(w[i], v @ v)
+        x[i], y[i], z[i] = scale * v
 
 
 @inlined
 def _point(chords, i, j, side):
     """x_j of the chart at keyframe i, j >= 1 keyframes after it (side 1) or before it (-1)."""
-    k = i if side > 0 else i - j
-    x = chords[j - 1]
-    return side * x[0, k], side * x[1, k], side * x[2, k]
+    return side * vec_at(chords[j - 1, :, i if side > 0 else i - j], 0)
 
 
 @inlined
@@ -114,52 +94,40 @@ def _half(chords, h, i, k, side, natural):
     Elimination of the spline's second derivatives M_j from the far end towards M_0 = a.  On the
     side before i, time runs backwards: v is to be negated.
     """
-    e, gx, gy, gz = 0.0, 0.0, 0.0, 0.0  # M_{j+1} = g + e M_j; natural: M_k = 0
-    outer = _gap(h, i, k - 1, side)
-    sx, sy, sz = _point(chords, i, k, side)
+    zero = Vec(0.0, 0.0, 0.0)
+    e, g = 0.0, zero  # M_{j+1} = g + e M_j; natural: M_k = 0
+    outer, beyond = _gap(h, i, k - 1, side), _point(chords, i, k, side)
     for j in range(k - 1, 0, -1):
-        inner = _gap(h, i, j - 1, side)
-        x, y, z = _point(chords, i, j, side)
-        wx, wy, wz = 0.0, 0.0, 0.0
-        if j > 1:
-            wx, wy, wz = _point(chords, i, j - 1, side)
+        inner, x = _gap(h, i, j - 1, side), _point(chords, i, j, side)
+        before = _point(chords, i, j - 1, side) if j > 1 else zero
         below = inner
         if j == k - 1 and not natural:
             # not-a-knot: M_k = (1 + ratio) M_{k-1} - ratio M_{k-2}
             ratio = outer / inner
             e = 1.0 + ratio
             below -= ratio * outer
-        f, g = 6.0 / outer, 6.0 / inner
         pivot = 1.0 / (2.0 * (inner + outer) + outer * e)
-        gx = (f * (sx - x) - g * (x - wx) - outer * gx) * pivot
-        gy = (f * (sy - y) - g * (y - wy) - outer * gy) * pivot
-        gz = (f * (sz - z) - g * (z - wz) - outer * gz) * pivot
+        rise, fall = (6.0 / outer) * (beyond - x), (6.0 / inner) * (x - before)
+        g = pivot * (rise - fall - outer * g)
         e = -below * pivot
-        outer, sx, sy, sz = inner, x, y, z
-    c, d = 1.0 / outer, outer / 6.0
-    return d * (2.0 + e), c * sx - d * gx, c * sy - d * gy, c * sz - d * gz
+        outer, beyond = inner, x
+    return (outer / 6.0) * (2.0 + e), (1.0 / outer) * beyond - (outer / 6.0) * g
 
 
 @inlined
 def _window(chords, h, closed, i, k):
     """v and a at keyframe i by the spline through k keyframes on either side."""
     before, after, start, stop = _extent(h, closed, i, k)
-    p, x, y, z, r, a, b, c = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    zero = Vec(0.0, 0.0, 0.0)
+    p, x, r, y = 0.0, zero, 0.0, zero
     if after > 0:
-        p, x, y, z = _half(chords, h, i, after, 1, stop or after < 2)
+        p, x = _half(chords, h, i, after, 1, stop or after < 2)
     if before > 0:
-        r, a, b, c = _half(chords, h, i, before, -1, start or before < 2)
+        r, y = _half(chords, h, i, before, -1, start or before < 2)
     if before == 0 or after == 0:
-        return x - a, y - b, z - c, 0.0, 0.0, 0.0
+        return x - y, zero
     f = 1.0 / (p + r)
-    return (
-        f * (r * x - p * a),
-        f * (r * y - p * b),
-        f * (r * z - p * c),
-        f * (x + a),
-        f * (y + b),
-        f * (z + c),
-    )
+    return f * (r * x - p * y), f * (x + y)
 
 
 @inlined
@@ -192,14 +160,12 @@ def _turned(chords, h, closed, i, k):
 
 
 @inlined
-def local_rates(chords, h, closed, i, rates):
+def local_rates(chords, h, closed, i):
     """v and a at keyframe i: the nested windows, each with its share of what wider ones left.
 
-    rates (6,); chords and h as `continued` and `chords` leave them, i counted there.
+    Chords and h as `continued` and `chords` leave them, i counted there.
     """
-    left = 1.0
-    for c in range(6):
-        rates[c] = 0.0
+    left, v, a = 1.0, Vec(0.0, 0.0, 0.0), Vec(0.0, 0.0, 0.0)
     for k in range(chords.shape[0], 0, -1):
         passed = 0.0
         if k > 1:
@@ -208,9 +174,9 @@ def local_rates(chords, h, closed, i, rates):
             passed = xi * xi * xi * (10.0 - xi * (15.0 - 6.0 * xi))
         if passed < 1.0:
             share = left * (1.0 - passed)
-            w = _window(chords, h, closed, i, k)
-            for c in range(6):
-                rates[c] += share * w[c]
+            own_v, own_a = _window(chords, h, closed, i, k)
+            v, a = v + share * own_v, a + share * own_a
         left *= passed
         if left == 0.0:
             break
+    return v, a

@@ -13,7 +13,6 @@ import math
 import numpy as np
 
 from quatspline.fitting.block_tridiagonal import workspace
-from quatspline.fitting.bspline import increment, keyframe, set_control, turned
 from quatspline.fitting.bspline_newton import (
     ARMIJO,
     CAP,
@@ -26,24 +25,26 @@ from quatspline.fitting.bspline_newton import (
     ease,
     keep,
     moved,
+    shift,
 )
 from quatspline.fitting.nu_rows import assemble, leg_end, leg_start, look
-from quatspline.kernels.jit import CHANGE, ITERATIONS, RESIDUAL, compiled, inlined
-from quatspline.kernels.scalars import mul
+from quatspline.kernels.jit import CHANGE, ITERATIONS, RESIDUAL, compiled
+from quatspline.kernels.values import (
+    exp,
+    keyframe,
+    put_quat,
+    put_quat_column,
+    put_vec,
+    quat_at,
+    vec_at,
+    vec_column,
+)
 
 ASTRAY = 0.5 * math.pi
 """Misses in rad from which a descent might end at another solution than the nearest."""
 
 FLAT = 2.0**-20
 """Share of the data's steps at which the equations are linear to 1e-6."""
-
-
-@inlined
-def _shift(g, move, length, first):
-    """g + length move, in place."""
-    for k in range(move.shape[0]):
-        for c in range(3):
-            g[c, k + first] += length * move[k, c]
 
 
 @compiled
@@ -58,8 +59,7 @@ def _set_flat(problem, x, move):
     if move.shape[0] > 0:
         assemble(flat, x, work)
     for k in range(move.shape[0]):
-        for c in range(3):
-            move[k, c] = work[3][k, c] / FLAT
+        put_vec(move[k], 0, (1.0 / FLAT) * vec_at(work[3][k], 0))
 
 
 @compiled
@@ -79,15 +79,15 @@ def _descend(problem, x, old, tolerance, by_change, limit):
             break
         copy(d, old, 1.0)
         length, before, known = CAP / max(longest, CAP), total, worst
-        _shift(g, move, length, first)
+        shift(g, move, length, first)
         while True:
             total, worst = look(problem, x, work[3])
             if total <= (1.0 - 2.0 * ARMIJO * length) * before or worst <= ROUNDING:
                 break
             length *= 0.5
-            _shift(g, move, -length, first)
+            shift(g, move, -length, first)
             if not length >= SHORTEST:
-                _shift(g, move, -length, first)
+                shift(g, move, -length, first)
                 return updates, known, change, False
         updates, change = updates + 1, moved(d, old, n + 1)
         met = change <= tolerance if by_change else worst <= tolerance
@@ -108,7 +108,7 @@ def _solve(problem, x, tolerance, by_change, limit):
     eased, best, old = np.empty(targets.shape), np.zeros(g.shape), np.empty(d.shape)
     flat = np.empty((unknowns, 3))
     _set_flat(problem, x, flat)
-    _shift(best, flat, 1.0, 0 if cyclic else 1)
+    shift(best, flat, 1.0, 0 if cyclic else 1)
     done, growth, updates, worst, change = 0.0, 1.0, 0, math.inf, 0.0
     while growth > LEAST_GROWTH and updates < limit:
         step = min(growth, 1.0 - done)
@@ -142,9 +142,9 @@ def _pose(q, weights, closed, sign):
     n, count = q.shape[0], q.shape[0] + (1 if closed else 0)
     targets, rows = np.empty((4, count)), np.zeros((4, count))
     for i in range(count):
-        k, s = i % n, sign if i >= n else 1.0
-        set_control(targets, i, s * q[k, 0], s * q[k, 1], s * q[k, 2], s * q[k, 3])
+        put_quat_column(targets, i, keyframe(q, i, sign))
         if closed or 0 < i < n - 1:
+            k = i % n
             rows[0, i], rows[1, i], rows[2, i] = 1.0 - weights[k, 0], weights[k, 1], weights[k, 2]
         if i > 0:
             rows[3, i] = 1.0 - rows[0, i] - rows[1, i - 1]
@@ -168,9 +168,8 @@ def newton_legs(q, weights, closed, sign, tolerance, by_change, limit, legs, rep
     for i in range(count):
         right, left = leg_start(problem, g, i), leg_end(problem, g, i + 1)
         if not closed and i == 0:
-            right = mul(*keyframe(q, 0), *turned(weights[0, 1], increment(w, 1)))
+            right = quat_at(q[0], 0) * exp(weights[0, 1] * vec_column(w, 1))
         if not closed and i == count - 1:
-            back = weights[count, 0] - 1.0
-            left = mul(*keyframe(q, count), *turned(back, increment(w, count)))
-        set_control(legs[i].T, 0, *right)
-        set_control(legs[i].T, 1, *left)
+            left = quat_at(q[count], 0) * exp((weights[count, 0] - 1.0) * vec_column(w, count))
+        put_quat(legs[i, 0], 0, right)
+        put_quat(legs[i, 1], 0, left)

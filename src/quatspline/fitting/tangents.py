@@ -17,7 +17,7 @@ import math
 import numpy as np
 
 from quatspline.kernels.jit import compiled, inlined
-from quatspline.kernels.scalars import exp, log_between, mul
+from quatspline.kernels.values import Vec, keyframe, log, norm, put_vec, vec_at
 from quatspline.quaternion import OPPOSITE
 
 # notation: log units throughout (half rotation vectors); h_i = t_{i+1} - t_i,
@@ -28,109 +28,75 @@ CHART, SECANT = 0.0, 1.0
 
 
 @inlined
-def keyframe(q, i, sign):
-    """q_i for any i, closed data going on as q_{i+n} = sign q_i."""
-    n = q.shape[0]
-    s = 1.0
-    if i < 0 or i >= n:
-        s = sign if (i // n) % 2 else 1.0
-        i %= n
-    return s * q[i, 0], s * q[i, 1], s * q[i, 2], s * q[i, 3]
-
-
-@inlined
-def moved(p, x, y, z):
-    """p exp(v): the point that velocity v reaches from p."""
-    w, a, b, c = exp(x, y, z)
-    return mul(p[0], p[1], p[2], p[3], w, a, b, c)
-
-
-@inlined
 def step(q, i, j, sign):
     """ln(q_i^-1 q_j)."""
-    a, b = keyframe(q, i, sign), keyframe(q, j, sign)
-    return log_between(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3])
+    return log(~keyframe(q, i, sign) * keyframe(q, j, sign))
 
 
 @inlined
-def _lifted(x, y, z, px, py, pz):
+def _lifted(x, expected):
     """The logarithm on the branch nearer to where it is expected: carries the chart past pi."""
-    r = math.sqrt(x * x + y * y + z * z)
+    r = norm(x)
     if abs(r - math.pi) < OPPOSITE:
-        r = math.sqrt(px * px + py * py + pz * pz)
-        k = math.pi / r if r > 0.0 else 0.0
-        return k * px, k * py, k * pz
-    k = 1.0 - 2.0 * math.pi / r if r > 0.0 else 1.0
-    near = (x - px) ** 2 + (y - py) ** 2 + (z - pz) ** 2
-    far = (k * x - px) ** 2 + (k * y - py) ** 2 + (k * z - pz) ** 2
-    return (k * x, k * y, k * z) if far < near else (x, y, z)
+        r = norm(expected)
+        return (math.pi / r if r > 0.0 else 0.0) * expected
+    other = (1.0 - 2.0 * math.pi / r if r > 0.0 else 1.0) * x
+    return other if norm(other - expected) < norm(x - expected) else x
 
 
 @compiled
-def _walk(q, h, sign, i, node, stop, way, time, x):
-    """Times and chart points of a window from its centre, node, to its node ``stop`` (way +-1)."""
+def _walk(q, h, sign, i, node, stop, way, chart):
+    """Points and times of a window from its centre, node, to its node ``stop`` (way +-1)."""
     j = i
     while node != stop:
-        a, b, c = step(q, j, j + way, sign)
-        a, b, c = a + x[node, 0], b + x[node, 1], c + x[node, 2]
+        expected = vec_at(chart[node], 0) + step(q, j, j + way, sign)
         gap = h[(j if way > 0 else j - 1) % h.size]
         j += way
-        time[node + way] = time[node] + way * gap
+        chart[node + way, 3] = chart[node, 3] + way * gap
         node += way
-        dx, dy, dz = step(q, i, j, sign)
-        x[node, 0], x[node, 1], x[node, 2] = _lifted(dx, dy, dz, a, b, c)
+        put_vec(chart[node], 0, _lifted(step(q, i, j, sign), expected))
 
 
 @compiled
-def chart_velocity(q, h, closed, sign, i, window, time, x):
-    """(1) at keyframe i by up to ``window`` (3 to 5) keyframes; time (5,), x (5, 3): scratch."""
+def chart_velocity(q, h, closed, sign, i, window, chart):
+    """(1) at keyframe i by up to ``window`` (3 to 5) keyframes; chart (5, 4) takes points and times."""
     n = q.shape[0]
     m = window if closed else min(window, n)
     first = i - window // 2
     if not closed:
         first = min(max(first, 0), n - m)
     c = i - first
-    time[c] = 0.0
-    x[c] = 0.0
-    _walk(q, h, sign, i, c, m - 1, 1, time, x)
-    _walk(q, h, sign, i, c, 0, -1, time, x)
-    vx, vy, vz = 0.0, 0.0, 0.0
+    chart[c] = 0.0
+    _walk(q, h, sign, i, c, m - 1, 1, chart)
+    _walk(q, h, sign, i, c, 0, -1, chart)
+    v = Vec(0.0, 0.0, 0.0)
     for j in range(m):
         if j != c:
-            slope = 1.0 / time[j]
+            slope = 1.0 / chart[j, 3]
             for k in range(m):
                 if k not in (c, j):
-                    slope *= time[k] / (time[k] - time[j])
-            vx += slope * x[j, 0]
-            vy += slope * x[j, 1]
-            vz += slope * x[j, 2]
-    return vx, vy, vz
+                    slope *= chart[k, 3] / (chart[k, 3] - chart[j, 3])
+            v = v + slope * vec_at(chart[j], 0)
+    return v
 
 
 @compiled
-def secant_velocity(q, h, i):
-    """The velocity of slerp at an end of open data: s_0 or s_{n-2}."""
-    k = 0 if i == 0 else q.shape[0] - 2
-    x, y, z = step(q, k, k + 1, 1.0)
-    return x / h[k], y / h[k], z / h[k]
-
-
-@compiled
-def end_velocity(q, h, i, window, ends, time, x):
-    """What an end of open data takes."""
+def end_velocity(q, h, i, window, ends, chart):
+    """What an end of open data takes: (1), or the velocity of slerp, s_0 or s_{n-2}."""
     if ends == SECANT:
-        return secant_velocity(q, h, i)
-    return chart_velocity(q, h, False, 1.0, i, window, time, x)
+        k = 0 if i == 0 else q.shape[0] - 2
+        return (1.0 / h[k]) * step(q, k, k + 1, 1.0)
+    return chart_velocity(q, h, False, 1.0, i, window, chart)
 
 
 @compiled
 def chart_velocities(q, h, closed, sign, window, ends):
-    """v_i at every keyframe, (n, 3) in log units a time."""
+    """v_i at every keyframe, (n, 3) in log units per time."""
     n = q.shape[0]
-    v, time, x = np.empty((n, 3)), np.empty(5), np.empty((5, 3))
+    v, chart = np.empty((n, 3)), np.empty((5, 4))
     for i in range(n):
         if closed or 0 < i < n - 1:
-            v[i, 0], v[i, 1], v[i, 2] = chart_velocity(q, h, closed, sign, i, window, time, x)
+            put_vec(v[i], 0, chart_velocity(q, h, closed, sign, i, window, chart))
         else:
-            v[i, 0], v[i, 1], v[i, 2] = end_velocity(q, h, i, window, ends, time, x)
+            put_vec(v[i], 0, end_velocity(q, h, i, window, ends, chart))
     return v

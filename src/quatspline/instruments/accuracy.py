@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from numpy.typing import ArrayLike
 
 from quatspline import quaternion
 from quatspline.curve import Curve
@@ -39,19 +40,39 @@ def errors(curve: Curve) -> dict[str, float]:
 
     inner_angle, angle (rad, on [3, 7] and everywhere), inner_omega (rad/t), inner_alpha (rad/t^2).
     """
-    times = curve.times
-    u = (np.arange(SAMPLES) + 0.5) / SAMPLES
-    t = (times[:-1, None] + np.diff(times)[:, None] * u).reshape(-1)
-    inner = (t >= INNER[0]) & (t <= INNER[1])
-    angle = quaternion.distance(curve(t), tumble(t))
-    omega, alpha = tumble_rates(t[inner])
-    own_omega, own_alpha = rates(curve, t[inner])
+    t, inner = _times(curve)
+    omega, alpha = tumble_rates(inner)
+    own_omega, own_alpha = rates(curve, inner)
     return {
-        "inner_angle": float(angle[inner].max()),
-        "angle": float(angle.max()),
+        "inner_angle": inner_angle(curve),
+        "angle": _angle(curve, t),
         "inner_omega": float(np.linalg.norm(own_omega - omega, axis=-1).max()),
         "inner_alpha": float(np.linalg.norm(own_alpha - alpha, axis=-1).max()),
     }
+
+
+def inner_angle(curve: Curve) -> float:
+    """The first of `errors` alone."""
+    return _angle(curve, _times(curve)[1])
+
+
+def _times(curve: Curve) -> tuple[FloatArray, FloatArray]:
+    """Times inside segments, and those of them on [3, 7]."""
+    t = curve.times[0] + curve.keyframes.inside(SAMPLES)
+    return t, t[(t >= INNER[0]) & (t <= INNER[1])]
+
+
+def _angle(curve: Curve, t: FloatArray) -> float:
+    return float(quaternion.distance(curve(t), tumble(t)).max())
+
+
+def measured_order(spacings: ArrayLike, errors: ArrayLike) -> float:
+    """The power of the spacing that errors fall with: the slope of the regression on logarithms.
+
+    Of spacings and errors (m,), m at least 2; NaN where an error is 0 or not finite.
+    """
+    x, y = _logs(spacings), _logs(errors)
+    return float(np.polyfit(x, y, 1)[0]) if np.isfinite(y).all() else np.nan
 
 
 def with_slopes(table: pd.DataFrame, by: list[str], levels: int = 5) -> pd.DataFrame:
@@ -63,15 +84,14 @@ def with_slopes(table: pd.DataFrame, by: list[str], levels: int = 5) -> pd.DataF
     groups = []
     for _, rows in table.groupby(by, sort=False):
         rows = rows.sort_values("keyframes")
-        x = -np.log(rows["keyframes"].to_numpy(dtype=float) - 1.0)
+        x = 1.0 / (rows["keyframes"].to_numpy(dtype=float) - 1.0)
         orders: dict[str, Any] = {}
         for error, suffix in ERRORS.items():
-            y = _logs(rows, error)
-            slope = np.full(len(rows), np.nan)
-            slope[1:] = np.diff(y) / np.diff(x)
-            last = np.flatnonzero(np.isfinite(y))[-levels:]
-            fit = np.polyfit(x[last], y[last], 1)[0] if last.size >= 3 else np.nan
-            orders |= {f"slope{suffix}": slope, f"regression{suffix}": fit}
+            y = rows[error].to_numpy(dtype=float)
+            pairs = [measured_order(x[i - 1 : i + 1], y[i - 1 : i + 1]) for i in range(1, len(y))]
+            last = np.flatnonzero(np.isfinite(_logs(y)))[-levels:]
+            fit = measured_order(x[last], y[last]) if last.size >= 3 else np.nan
+            orders |= {f"slope{suffix}": [np.nan, *pairs], f"regression{suffix}": fit}
         groups.append(rows.assign(**orders))
     return pd.concat(groups, ignore_index=True)
 
@@ -85,7 +105,7 @@ def with_reach(table: pd.DataFrame, by: list[str]) -> pd.DataFrame:
     groups = []
     for _, rows in table.groupby(by, sort=False):
         rows = rows.sort_values("keyframes")
-        x, y = _logs(rows, "spacing"), _logs(rows, "inner_angle")
+        x, y = _logs(rows["spacing"]), _logs(rows["inner_angle"])
         reached = {name: reach(x, y, np.log(np.radians(t))) for name, t in TARGETS.items()}
         reasons = [f"{TARGETS[name]:g} degrees: {why}" for name, (_, why) in reached.items() if why]
         spacings = {name: value for name, (value, _) in reached.items()}
@@ -112,6 +132,6 @@ def reach(x: FloatArray, y: FloatArray, goal: float) -> tuple[float, str | None]
     return float(np.exp(x[i] + share * (x[i + 1] - x[i]))), None
 
 
-def _logs(rows: pd.DataFrame, column: str) -> FloatArray:
+def _logs(values: ArrayLike) -> FloatArray:
     with np.errstate(divide="ignore"):
-        return np.log(rows[column].to_numpy(dtype=float))
+        return np.log(np.asarray(values, dtype=float))

@@ -16,7 +16,7 @@ import numpy as np
 
 from quatspline import quaternion
 from quatspline.curve import Curve
-from quatspline.quaternion import BoolArray, FloatArray, IntArray
+from quatspline.inputs.arrays import BoolArray, FloatArray, IntArray
 
 WINDOWS = 7
 """Windows of a segment, each overlapping the next by half."""
@@ -75,9 +75,8 @@ def breaks(curve: Curve) -> Breaks:
 
 def _windows(curve: Curve) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Ends and middles (w, 3) of all windows, orientations there (w, 3, 4), spacings of keyframes (w,)."""
-    knots = curve.keyframes.knots
-    h = np.diff(knots)
-    t = knots[:-1, None] + h[:, None] * (np.arange(WINDOWS + 2) / (WINDOWS + 1))
+    knots, h = curve.keyframes.knots, curve.keyframes.spacings
+    t = curve.keyframes.inside(np.arange(WINDOWS + 2) / (WINDOWS + 1)).reshape(-1, WINDOWS + 2)
     t[:, -1] = np.nextafter(knots[1:], 0.0)  # of this segment, not of the next
     q = _orientations(curve, t)
     of = np.arange(WINDOWS)[:, None] + np.arange(3)

@@ -17,7 +17,7 @@ import pandas as pd
 
 from quatspline.curve import Curve
 from quatspline.instruments.breaks import UNBROKEN, breaks
-from quatspline.instruments.derivatives import closed_forms, one_sided, rates_since
+from quatspline.instruments.derivatives import closed_forms, rates_since
 from quatspline.instruments.trials import Row
 from quatspline.quaternion import FloatArray
 
@@ -45,6 +45,12 @@ STENCIL_TICKS = (32.0, 1e5, 1e8, 1e10)
 """... and stencils have weights of up to 80 and 360 in all at an end, over steps of 6e-3 to the order."""
 FALLING = 0.05
 """So do those that fall to this share when the step falls to a tenth."""
+
+ONE_SIDED = 4
+"""Points of the one-sided extrapolation to a knot: exact for cubics."""
+LIMIT = np.array([4.0, -6.0, 4.0, -1.0])
+SLOPE = np.array([-13.0 / 3.0, 19.0 / 2.0, -7.0, 11.0 / 6.0])
+"""Weights of values at h, 2h, 3h, 4h for the value and for h times the slope at 0."""
 
 DENSE = 7
 """Samples a segment for the size of a quantity."""
@@ -93,7 +99,7 @@ def speeds(curve: Curve) -> Row:
     motion rests throughout, the first also without inner keyframes.
     """
     at, _ = _inner_knots(curve)
-    dense = _dense(curve)
+    dense = curve.keyframes.inside(DENSE)
     speed, at_keys = (np.linalg.norm(rates_since(curve, t)[0], axis=-1) for t in (dense, at))
     mean = float(speed.mean())
     if mean * float(curve.keyframes.knots[-1]) <= AT_REST:
@@ -104,31 +110,40 @@ def speeds(curve: Curve) -> Row:
 
 def _inner_knots(curve: Curve) -> tuple[FloatArray, FloatArray]:
     """Knots with a segment on either side (a closed curve's seam too), and the shorter spacing."""
-    knots = curve.keyframes.knots
-    h = np.diff(knots)
+    knots, h = curve.keyframes.knots, curve.keyframes.spacings
     if curve.closed:
         return knots[1:], np.minimum(h, np.roll(h, -1))
     return knots[1:-1], np.minimum(h[:-1], h[1:])
-
-
-def _dense(curve: Curve) -> FloatArray:
-    knots = curve.keyframes.knots
-    u = (np.arange(DENSE) + 0.5) / DENSE
-    return (knots[:-1, None] + np.diff(knots)[:, None] * u).reshape(-1)
 
 
 def _jumps(curve: Curve, at: FloatArray, step: FloatArray) -> list[FloatArray]:
     """The jump at every knot, of every order."""
     if at.size == 0:
         return [np.zeros(0)] * len(QUANTITIES)
-    after, before = (one_sided(curve, at, step, side) for side in (1, -1))
+    after, before = (_one_sided(curve, at, step, side) for side in (1, -1))
     return [np.linalg.norm(a - b, axis=-1) for a, b in zip(after, before, strict=True)]
+
+
+def _one_sided(curve: Curve, at: FloatArray, step: FloatArray, side: int) -> list[FloatArray]:
+    """Limits at knots ``at`` (m,) from one side (+1 or -1): q (m, 4), then three derivatives (m, 3).
+
+    Knots are times since the first keyframe; beyond a closed curve's seam its first segment goes on.
+    Values at 1 to 4 steps (m,) away are extrapolated; the last is the slope of the acceleration.
+    """
+    nodes = at[:, None] + side * step[:, None] * np.arange(1.0, ONE_SIDED + 1)
+    t, period = nodes.reshape(-1), curve.keyframes.knots[-1]
+    rates = rates_since(curve, np.where(t > period, t - period, t))
+    q, omega, alpha = (
+        values.reshape(*nodes.shape, -1) for values in (curve.inner(t)[:, 0], *rates)
+    )
+    limits = [np.einsum("j,mji->mi", LIMIT, values) for values in (q, omega, alpha)]
+    return [*limits, np.einsum("j,mji->mi", SLOPE, alpha) / (side * step[:, None])]
 
 
 def _sizes(curve: Curve) -> list[float]:
     """Largest sizes of q, of both rates and of the acceleration's slope between samples."""
-    omega, alpha = rates_since(curve, _dense(curve))
-    apart = np.diff(curve.keyframes.knots)[:, None, None] / DENSE
+    omega, alpha = rates_since(curve, curve.keyframes.inside(DENSE))
+    apart = curve.keyframes.spacings[:, None, None] / DENSE
     slope = np.diff(alpha.reshape(-1, DENSE, 3), axis=1) / apart
     return [1.0, *(float(np.linalg.norm(x, axis=-1).max()) for x in (omega, alpha, slope))]
 
@@ -140,9 +155,9 @@ def rounding(curve: Curve, order: int) -> float:
 
 def _floor(curve: Curve, order: int, size: float, speed: float) -> float:
     """What a jump of this order has to exceed to be told from rounding, of orientations and of time."""
-    knots = curve.keyframes.knots
-    scale = float(np.diff(knots).min()) ** -order
-    tick = float(np.spacing(knots[-1])) * speed * scale
+    keyframes = curve.keyframes
+    scale = float(keyframes.spacings.min()) ** -order
+    tick = float(np.spacing(keyframes.knots[-1])) * speed * scale
     if not closed_forms(curve):
         return STENCIL[order] * scale + STENCIL_TICKS[order] * tick
     report = curve.solve_report

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quatspline.curve import Curve
-from quatspline.options import declared
+from quatspline.options import declared_by
 from quatspline.quaternion import FloatArray
 from quatspline.solving import SolveReport
 
@@ -40,7 +40,7 @@ TINY = 1e-300
 
 def methods(scheme: type[Curve]) -> tuple[str | None, ...]:
     """The solvers that an iterative scheme offers; (None,) where there is one only."""
-    option = declared(scheme._fit).get("method")
+    option = declared_by(scheme).get("method")
     return get_args(option.annotation) if option is not None else (None,)
 
 

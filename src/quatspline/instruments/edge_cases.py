@@ -73,7 +73,7 @@ def _claim(case: EdgeCase, curve: Curve | type[Curve]) -> str:
 
 
 def _judged(case: EdgeCase, curve: Curve) -> Row:
-    t = _samples(case.times)
+    t = _samples(curve)
     q = curve(t)
     bad = _unusable(curve, t, q)
     if bad is not None:
@@ -132,7 +132,7 @@ def _largest(keyframes: FloatArray) -> float:
     return float(quaternion.distance(keyframes[1:], keyframes[:-1]).max())
 
 
-def _samples(times: FloatArray) -> FloatArray:
-    u = np.arange(SAMPLES) / SAMPLES
-    inside = times[:-1, None] + np.diff(times)[:, None] * u
-    return np.append(inside.reshape(-1), times[-1])
+def _samples(curve: Curve) -> FloatArray:
+    keyframes = curve.keyframes
+    since = np.append(keyframes.inside(np.arange(SAMPLES) / SAMPLES), keyframes.knots[-1])
+    return curve.times[0] + since

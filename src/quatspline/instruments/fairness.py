@@ -15,6 +15,7 @@ import numpy as np
 from quatspline.curve import Curve
 from quatspline.instruments.continuity import rounding
 from quatspline.instruments.derivatives import closed_forms, rates_since
+from quatspline.keyframes import Keyframes
 from quatspline.quaternion import FloatArray
 
 PANELS, POINTS = 2, 5
@@ -100,7 +101,7 @@ def _settled(curve: Curve) -> Iterator[_Level]:
     knots = curve.keyframes.knots
     halvings, most = (HALVINGS, MOST) if closed_forms(curve) else (STENCIL_HALVINGS, STENCIL_MOST)
     span, budget = knots[-1], most * (len(knots) - 1)
-    coarse = _whole(knots)
+    coarse = _whole(curve.keyframes)
     before = _measured(curve, coarse)[1]
     done = np.zeros(3)
     for level in range(halvings + 1):
@@ -124,11 +125,9 @@ def _settled(curve: Curve) -> Iterator[_Level]:
         coarse, before = fine.picked(halves), integrals[halves]
 
 
-def _whole(knots: FloatArray) -> _Panels:
-    spacing = np.diff(knots)
-    left = knots[:-1, None] + spacing[:, None] * (np.arange(PANELS) / PANELS)
-    h = np.repeat(spacing, PANELS)
-    return _Panels(left.reshape(-1), h / PANELS, h)
+def _whole(keyframes: Keyframes) -> _Panels:
+    left, h = keyframes.inside(np.arange(PANELS) / PANELS), np.repeat(keyframes.spacings, PANELS)
+    return _Panels(left, h / PANELS, h)
 
 
 def _measured(curve: Curve, panels: _Panels) -> tuple[FloatArray, FloatArray]:

@@ -60,7 +60,7 @@ def invariance(
     step between keyframes; invariant: the verdict, `relative` <= 1e-7; or the reason of a failure.
     """
     curve = build(times, keyframes)
-    t = _inside(times)
+    t = times[0] + curve.keyframes.inside(SAMPLES)
     orientations = curve(t)
     largest = float(quaternion.distance(keyframes[1:], keyframes[:-1]).max())
 
@@ -80,11 +80,6 @@ def invariance(
         for name, changes in PROPERTIES.items()
         for row in attempted(partial(measured, changes(times, keyframes, rng)))
     ]
-
-
-def _inside(times: FloatArray) -> FloatArray:
-    u = (np.arange(SAMPLES) + 0.5) / SAMPLES
-    return (times[:-1, None] + np.diff(times)[:, None] * u).reshape(-1)
 
 
 def _left(times: FloatArray, q: FloatArray, rng: np.random.Generator) -> list[Change]:

@@ -32,9 +32,9 @@ def responses(build: Build, times: FloatArray, keyframes: FloatArray) -> pd.Data
     response, the largest angle between the curves on the segment over that of the turn (1 is neutral).
     """
     middle = len(keyframes) // 2
-    u = (np.arange(SAMPLES) + 0.5) / SAMPLES
-    t = times[:-1, None] + np.diff(times)[:, None] * u
-    before = build(times, keyframes)(t)
+    curve = build(times, keyframes)
+    t = times[0] + curve.keyframes.inside(SAMPLES).reshape(-1, SAMPLES)
+    before = curve(t)
     largest = np.zeros(len(t))
     for axis in np.eye(3):
         turned = keyframes.copy()

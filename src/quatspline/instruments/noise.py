@@ -14,6 +14,7 @@ from quatspline import quaternion
 from quatspline.curve import Curve
 from quatspline.instruments.derivatives import rates
 from quatspline.instruments.trials import Build, Row
+from quatspline.keyframes import Keyframes
 from quatspline.quaternion import FloatArray
 
 Keys = tuple[FloatArray, FloatArray]
@@ -40,17 +41,18 @@ def noise(
     body velocity and acceleration, times the mean spacing and its square, over the same.  Errors of times
     (inner ones: the domain stays) count as the turns that the rms speed makes of them.
     """
-    spacing = float(np.diff(times).mean())
-    t, weights = _nodes(times)
-    truth = _motion(build(times, keyframes), t)
+    curve = build(times, keyframes)
+    spacing = float(curve.keyframes.spacings.mean())
+    t, weights = _nodes(curve.keyframes)
+    truth = _motion(curve, t)
     if kind == "keyframes":
         unit = SIGMA * np.sqrt(3.0)  # the rms angle of errors about three axes
     else:
         unit = SIGMA * spacing * float(np.sqrt(weights @ np.sum(truth[1] ** 2, axis=-1)))
     squares = np.zeros(3)
     for _ in range(trials):
-        curve = build(*DISTURBED[kind](times, keyframes, rng))
-        squares += _squares(_motion(curve, t), truth, weights) / trials
+        disturbed = build(*DISTURBED[kind](times, keyframes, rng))
+        squares += _squares(_motion(disturbed, t), truth, weights) / trials
     gains = np.sqrt(squares) * spacing ** np.arange(3.0) / unit
     return dict(zip(("gain", "gain_omega", "gain_alpha"), gains.tolist(), strict=True))
 
@@ -72,12 +74,11 @@ DISTURBED: dict[str, Callable[[FloatArray, FloatArray, np.random.Generator], Key
 }
 
 
-def _nodes(times: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _nodes(keyframes: Keyframes) -> tuple[FloatArray, FloatArray]:
     """Times (m,) and weights (m,), of sum 1, of a mean over the domain."""
     u, w = np.polynomial.legendre.leggauss(SAMPLES)
-    h = np.diff(times)[:, None]
-    t = times[:-1, None] + h * (0.5 + 0.5 * u)
-    return t.reshape(-1), (0.5 * h * w / (times[-1] - times[0])).reshape(-1)
+    weights = 0.5 * np.outer(keyframes.spacings, w) / keyframes.knots[-1]
+    return keyframes.times[0] + keyframes.inside(0.5 + 0.5 * u), weights.reshape(-1)
 
 
 def _motion(curve: Curve, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

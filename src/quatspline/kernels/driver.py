@@ -13,20 +13,23 @@ import math
 import numpy as np
 from numba import carray
 
+from quatspline.inputs.arrays import FloatArray, IntArray
 from quatspline.kernels.jit import (
     BLOCK,
     CONSTANTS,
+    LANES,
     REACH,
     RESULT,
     ROWS,
+    UNREPORTED,
     at_address,
     call_fit,
     call_sample,
     compiled,
     inlined,
     on_stack,
+    splat,
 )
-from quatspline.quaternion import FloatArray, IntArray
 
 BATCH = 1024
 """Samples located at once, before their tracks are evaluated: within the first-level cache."""
@@ -77,14 +80,17 @@ def _describe(knots, segments, signs, closed, places):
 
 @compiled
 def fit_tracks(address, tracks, h, closed, signs, parameters, segments, report):
-    """Call a fit kernel on every track (K, n, 4); the largest reach that they report."""
+    """Call a fit kernel on every track (K, n, 4); the largest reach, UNREPORTED where one reports none."""
     reach = 0.0
     if not tracks.shape[0] == segments.shape[0] == report.shape[0] == signs.size:
         raise ValueError("tracks, segments, report and signs: one of each per track is expected")
     if segments.shape[1] % h.size or tracks.shape[1] + closed != h.size + 1:
         raise ValueError("spacings: one from each keyframe to the next is expected")
     for k in range(tracks.shape[0]):
+        report[k, REACH] = UNREPORTED
         call_fit(address, tracks[k], h, closed, signs[k], parameters, segments[k], report[k])
+        if report[k, REACH] == UNREPORTED:
+            return UNREPORTED
         reach = max(reach, report[k, REACH])
     return reach
 
@@ -125,9 +131,9 @@ def sample(address, order, curve, origin, slack, t, out):
                 for j in range(n):
                     sheet[0, j] = u[first + j]
                 if i == MIXED:
-                    _gather(sheet, knots, segments[k], where, first, n)
+                    _gather(pointer, knots, segments[k], where, first, n)
                 elif i != filled:
-                    _spread(sheet, knots, segments[k], i, BLOCK if t.size > 1 else 1)
+                    _spread(pointer, knots, segments[k], i, BLOCK if t.size > 1 else LANES)
                 filled = i
                 call_sample(address, pointer, n)
                 _store(sheet, order, own, first, n, tracks)
@@ -155,6 +161,8 @@ def _locate(knots, closed, origin, slack, t, segment, u, where, spans, owner):
             inside += (x >= lo) & (x < hi)
         count, i = inside, segment
         if inside < n:
+            count = _leading(lo, hi, origin, t[start:])
+        if count < LONG and inside < n:
             stop = start + n
             segment, around, bad = _one_by_one(
                 knots,
@@ -202,6 +210,15 @@ def _one_by_one(knots, closed, origin, slack, t, segment, u, where):
 
 
 @inlined
+def _leading(lo, hi, origin, t):
+    """Samples in a row from the first on that lie in a segment, at most a block less one."""
+    n = 0
+    while n < min(BLOCK - 1, t.size) and t[n] - origin >= lo and t[n] - origin < hi:
+        n += 1
+    return n
+
+
+@inlined
 def _run(where):
     """Samples and segment of the block that begins here: a long run, or all, mixed."""
     n = 1
@@ -209,7 +226,7 @@ def _run(where):
         n += 1
     if n >= LONG or n == where.size:
         return n, where[0]
-    return where.size, MIXED
+    return min(where.size, BLOCK - LANES), MIXED
 
 
 @inlined
@@ -239,22 +256,34 @@ def _find(knots, x, segment):
 def _spread(sheet, knots, segments, i, width):
     """The constants of segment i for all samples of a block."""
     rate = 1.0 / (knots[i + 1] - knots[i])
-    for j in range(width):
-        sheet[1, j] = rate
+    for j in range(0, width, LANES):
+        splat(sheet, BLOCK + j, rate)
     for c in range(segments.shape[1]):
         value = segments[i, c]
-        for j in range(width):
-            sheet[CONSTANTS + c, j] = value
+        for j in range(0, width, LANES):
+            splat(sheet, BLOCK * (CONSTANTS + c) + j, value)
 
 
 @inlined
 def _gather(sheet, knots, segments, where, first, n):
-    """The constants of each sample's own segment."""
-    for j in range(n):
-        i = where[first + j]
-        sheet[1, j] = 1.0 / (knots[i + 1] - knots[i])
+    """The constants of each sample's own segment, those of neighbours in one segment together.
+
+    Vectors reach beyond a run, where the next run overwrites them; a mixed block leaves room for the last.
+    """
+    start = 0
+    while start < n:
+        i = where[first + start]
+        stop = start + 1
+        while stop < n and where[first + stop] == i:
+            stop += 1
+        rate = 1.0 / (knots[i + 1] - knots[i])
+        for j in range(start, stop, LANES):
+            splat(sheet, BLOCK + j, rate)
         for c in range(segments.shape[1]):
-            sheet[CONSTANTS + c, j] = segments[i, c]
+            value = segments[i, c]
+            for j in range(start, stop, LANES):
+                splat(sheet, BLOCK * (CONSTANTS + c) + j, value)
+        start = stop
 
 
 @inlined

@@ -25,11 +25,14 @@ from typing import Any
 
 import numba
 from llvmlite import ir
+from numba import extending
 from numba.core import types
 from numba.core.compiler_lock import global_compiler_lock
-from numba.extending import intrinsic
 
 from quatspline.system import forking
+from quatspline.system.moved import today
+
+intrinsic: Any = extending.intrinsic  # typed, mypy would ask callers for the typing context
 
 BLOCK = 48
 """Samples in a block: its sheet stays within the first-level cache, and rows no power of two apart
@@ -40,6 +43,10 @@ ROWS = 64
 
 CONSTANTS = 2
 """The first row of the segment's constants."""
+
+LANES = 4
+"""Constants are spread over a row by vectors of so many, the widest that a core stores at once: BLOCK is a
+multiple."""
 
 RESULT = ROWS - 4
 """The first row of the result: w, x, y, z of a quaternion or x, y, z of a rate."""
@@ -76,7 +83,7 @@ def _compiled_from(source: Path) -> set[Path]:
         path = pending.pop()
         seen.add(path)
         for module in _imported(path.read_text(encoding="utf-8")):
-            found = package.joinpath(*module.split(".")[1:]).with_suffix(".py")
+            found = package.joinpath(*today(module).split(".")[1:]).with_suffix(".py")
             if found not in seen and found.is_file() and COMPILES in found.read_text("utf-8"):
                 pending.append(found)
     return seen
@@ -118,23 +125,13 @@ def _cached(function: Callable[..., Any], decorate: Callable[[], Any]) -> Any:
 
 
 def inlined(function: Callable[..., Any]) -> Any:
-    """Compile a scalar primitive that its callers always inline (so that loops vectorise)."""
-    return numba.njit(forceinline=True, **SETTINGS)(function)
+    """A function that compiled callers always inline, so that loops vectorise; Python runs it as it is."""
+    return extending.register_jitable(forceinline=True, **SETTINGS)(function)
 
 
 def compiled(function: Callable[..., Any]) -> Any:
     """Compile a function called from Python: cached on disk, free of the interpreter lock."""
     return _cached(function, lambda: numba.njit(cache=True, nogil=True, **SETTINGS)(function))
-
-
-@inlined
-def whole(n):
-    """n samples rounded up to whole vectors (of 8): a loop without a remainder.
-
-    The remainder of a long loop body may be contracted otherwise than its vectors, and a sample's last
-    digits would depend on its neighbours.  BLOCK is a multiple, so that the sheet has room.
-    """
-    return (n + 7) & -8
 
 
 class Kernel:
@@ -175,6 +172,9 @@ FIT_SIGNATURE = types.void(
 ITERATIONS, CHANGE, RESIDUAL, REACH = range(4)
 """Entries of a fit kernel's report; the last is the largest half angle that a sample can meet."""
 
+UNREPORTED = -1.0
+"""A reach that was not written: kernels for near angles must not be taken by an oversight."""
+
 
 def sample_kernel(function: Callable[..., Any]) -> Kernel:
     """A kernel ``f(sheet, n)`` that evaluates the first n samples of a block.
@@ -189,7 +189,7 @@ def fit_kernel(function: Callable[..., Any]) -> Kernel:
 
     q (n, 4) keyframes, h (segments,) spacings, sign the closing sign, parameters (p,) the
     scheme's options as numbers; fills segments (segments, constants) and report (4,),
-    whose entries are named above.
+    whose entries are named above.  Writing report[REACH] is a duty, whatever the family.
     """
     return Kernel(function, FIT_SIGNATURE)
 
@@ -206,6 +206,23 @@ def on_stack(typing: Any, count: Any) -> Any:
         return builder.bitcast(space, context.get_value_type(_sheet))
 
     return _sheet(count), generate
+
+
+@intrinsic
+def splat(typing: Any, sheet: Any, at: Any, value: Any) -> Any:
+    """Store LANES copies of a value from a place of a sheet on; a loop would store one by one."""
+
+    def generate(context: Any, builder: Any, typed: Any, values: Any) -> Any:
+        pointer, place, number = values
+        vector = ir.VectorType(ir.DoubleType(), LANES)
+        nothing, lane = ir.Constant(vector, ir.Undefined), ir.IntType(32)
+        one = builder.insert_element(nothing, number, lane(0))
+        every = ir.Constant(ir.VectorType(lane, LANES), [0] * LANES)
+        where = builder.bitcast(builder.gep(pointer, [place]), vector.as_pointer())
+        builder.store(builder.shuffle_vector(one, nothing, every), where, align=8)
+        return context.get_dummy_value()
+
+    return types.void(_sheet, types.intp, types.float64), generate
 
 
 @intrinsic

@@ -11,7 +11,6 @@ import math
 import numpy as np
 from numba import carray
 
-from quatspline.fitting.tangents import keyframe
 from quatspline.kernels.driver import SHEET
 from quatspline.kernels.jit import (
     BLOCK,
@@ -23,7 +22,7 @@ from quatspline.kernels.jit import (
     inlined,
     on_stack,
 )
-from quatspline.kernels.scalars import arc_angle
+from quatspline.kernels.values import arc, keyframe, quat_at
 
 
 @inlined
@@ -59,9 +58,7 @@ def _worst(address, knots, segments, q, sign, places, sheet, pointer):
         call_sample(address, pointer, n)
         for j in range(n):
             _, _, k = _place(places, count, first + j)
-            key = keyframe(q, k, sign)
-            p = sheet[RESULT, j], sheet[RESULT + 1, j], sheet[RESULT + 2, j], sheet[RESULT + 3, j]
-            theta, _, _ = arc_angle(p[0], p[1], p[2], p[3], key[0], key[1], key[2], key[3])
+            theta, _, _ = arc(quat_at(sheet[RESULT:, j], 0), keyframe(q, k, sign))
             worst = max(worst, theta) if theta == theta else math.inf
     return 2.0 * worst
 

@@ -1,8 +1,6 @@
-"""Scalar unit-quaternion primitives, compiled and always inlined.
+"""Sines, cosines and arc tangents by polynomials, compiled and always inlined.
 
-Everything that the schemes' kernels are made of.  Quaternions travel as four scalars (w, x, y, z)
-and vectors as three, so that a loop over samples vectorises.  Logarithms are half rotation
-vectors: ``exp(v) = (cos |v|, v sin |v| / |v|)`` and ``log`` is its inverse on the ball |v| <= pi.
+Branch-free, so that a loop over samples vectorises.
 """
 
 from __future__ import annotations
@@ -50,6 +48,12 @@ D4, D5 = 2.480153321245251e-05, -2.7500537483149654e-07
 SMALL = 0.33
 """Half angles up to this many radians take half the terms."""
 
+# Near-minimax polynomial in z = x^2 for atan(x)/x on |x| <= tan(pi/8): error 1.3e-18.
+A1, A2, A3, A4 = -0.3333333333333312, 0.1999999999994035, -0.14285714279197312, 0.11111110742286896
+A5, A6, A7, A8 = -0.0909089673297879, 0.0769204396500265, -0.06662936116136517, 0.058467627400560856
+A9, A10, A11 = -0.05034575594522044, 0.03795171422296338, -0.017790395523288063
+TAN_PI_8 = math.sqrt(2.0) - 1.0
+
 ROUND = 6755399441055744.0  # 1.5 * 2^52: adding and subtracting it rounds to an integer
 INVERSE_PI = 1.0 / math.pi
 PI_HIGH = math.pi
@@ -66,12 +70,41 @@ TINY = 1e-300
 
 
 @inlined
+def series(z):
+    """((sin(r)/r - 1)/z, (cos r - 1)/z) of z = r^2 for r <= NEAR: entire in z."""
+    s = ((((((S8 * z + S7) * z + S6) * z + S5) * z + S4) * z + S3) * z + S2) * z + S1
+    c = ((((((C8 * z + C7) * z + C6) * z + C5) * z + C4) * z + C3) * z + C2) * z + C1
+    return s, c
+
+
+@inlined
+def series_slopes(z):
+    """The derivatives of `series` by z."""
+    s = (((((7 * S8 * z + 6 * S7) * z + 5 * S6) * z + 4 * S5) * z + 3 * S4) * z + 2 * S3) * z + S2
+    c = (((((7 * C8 * z + 6 * C7) * z + 5 * C6) * z + 4 * C5) * z + 3 * C4) * z + 2 * C3) * z + C2
+    return s, c
+
+
+@inlined
+def series_bend(z):
+    """The second derivative of the first of `series`."""
+    s = ((42 * S8 * z + 30 * S7) * z + 20 * S6) * z + 12 * S5
+    return (s * z + 6 * S4) * z + 2 * S3
+
+
+@inlined
+def sinc_near(z):
+    """(sin(r)/r, cos r) of z = r^2 for r <= NEAR: entire in z, no root and no division."""
+    s, c = series(z)
+    return s * z + 1.0, c * z + 1.0
+
+
+@inlined
 def sincos_near(r):
     """(sin r, cos r) for |r| <= NEAR, to rounding."""
     z = r * r
-    s = (((((((S8 * z + S7) * z + S6) * z + S5) * z + S4) * z + S3) * z + S2) * z + S1) * z
-    c = (((((((C8 * z + C7) * z + C6) * z + C5) * z + C4) * z + C3) * z + C2) * z + C1) * z
-    return s * r + r, c + 1.0
+    s, c = series(z)
+    return (s * z) * r + r, c * z + 1.0
 
 
 @inlined
@@ -81,14 +114,6 @@ def sincos_small(r):
     s = ((((T5 * z + T4) * z + T3) * z + T2) * z + T1) * z
     c = ((((D5 * z + D4) * z + D3) * z + D2) * z + D1) * z
     return s * r + r, c + 1.0
-
-
-@inlined
-def sinc_near(z):
-    """(sin(r)/r, cos r) of z = r^2 for r <= NEAR: entire in z, no root and no division."""
-    s = (((((((S8 * z + S7) * z + S6) * z + S5) * z + S4) * z + S3) * z + S2) * z + S1) * z
-    c = (((((((C8 * z + C7) * z + C6) * z + C5) * z + C4) * z + C3) * z + C2) * z + C1) * z
-    return s + 1.0, c + 1.0
 
 
 @inlined
@@ -120,227 +145,15 @@ def sinc(z):
 
 
 @inlined
-def mul(a, b, c, d, e, f, g, h):
-    """The product (a, b, c, d)(e, f, g, h)."""
-    return (
-        a * e - b * f - c * g - d * h,
-        a * f + b * e + c * h - d * g,
-        a * g - b * h + c * e + d * f,
-        a * h + b * g - c * f + d * e,
-    )
+def arctan_series(z):
+    """atan(x)/x - 1 of z = x^2 for |x| <= tan(pi/8)."""
+    r = (((((A11 * z + A10) * z + A9) * z + A8) * z + A7) * z + A6) * z + A5
+    return ((((r * z + A4) * z + A3) * z + A2) * z + A1) * z
 
 
 @inlined
-def between(a, b, c, d, e, f, g, h):
-    """The relative quaternion (a, b, c, d)^-1 (e, f, g, h)."""
-    return mul(a, -b, -c, -d, e, f, g, h)
-
-
-@inlined
-def cross(a, b, c, d, e, f):
-    """The cross product (a, b, c) x (d, e, f)."""
-    return b * f - c * e, c * d - a * f, a * e - b * d
-
-
-@inlined
-def exp(x, y, z):
-    """The unit quaternion exp(v)."""
-    s, c = sinc(x * x + y * y + z * z)
-    return c, s * x, s * y, s * z
-
-
-@inlined
-def log(w, x, y, z):
-    """The principal logarithm, |log| <= pi; of -1, which has none, pi about the first axis."""
-    length = math.sqrt(x * x + y * y + z * z)
-    if length < TINY:
-        if w < 0.0:
-            return math.pi, 0.0, 0.0
-        return x / w, y / w, z / w
-    scale = math.atan2(length, w) / length
-    return scale * x, scale * y, scale * z
-
-
-@inlined
-def log_between(a, b, c, d, e, f, g, h):
-    """log((a, b, c, d)^-1 (e, f, g, h)): the step from one keyframe to the next."""
-    w, x, y, z = between(a, b, c, d, e, f, g, h)
-    return log(w, x, y, z)
-
-
-@inlined
-def polar(x, y, z):
-    """(|v|, v/|v|); the axis of a vanishing vector is zero."""
-    length = math.sqrt(x * x + y * y + z * z)
-    scale = 1.0 / (length + TINY) if length > TINY else 0.0
-    return length, scale * x, scale * y, scale * z
-
-
-@inlined
-def unrotate(s, c, nx, ny, nz, x, y, z):
-    """The vector (x, y, z) seen after the turn exp(theta n), s = sin theta, c = cos theta: R^T v."""
-    tx, ty, tz = cross(nx, ny, nz, x, y, z)
-    ux, uy, uz = cross(nx, ny, nz, tx, ty, tz)
-    k = 2.0 * s * c
-    m = 2.0 * s * s
-    return x - k * tx + m * ux, y - k * ty + m * uy, z - k * tz + m * uz
-
-
-@inlined
-def rotate(w, qx, qy, qz, x, y, z):
-    """The vector (x, y, z) turned by the unit quaternion."""
-    tx, ty, tz = cross(qx, qy, qz, x, y, z)
-    ux, uy, uz = cross(qx, qy, qz, tx, ty, tz)
-    return x + 2.0 * (w * tx + ux), y + 2.0 * (w * ty + uy), z + 2.0 * (w * tz + uz)
-
-
-@inlined
-def jacobian_coefficients(p2):
-    """A = (1 - cos p)/p^2 and B = (p - sin p)/p^3 of p2 = p^2, by series below p = 1."""
-    if p2 < 1.0:
-        a = 0.5 - p2 / 24 * (
-            1
-            - p2
-            / 30
-            * (
-                1
-                - p2
-                / 56
-                * (1 - p2 / 90 * (1 - p2 / 132 * (1 - p2 / 182 * (1 - p2 / 240 * (1 - p2 / 306)))))
-            )
-        )
-        b = 1 / 6 - p2 / 120 * (
-            1
-            - p2
-            / 42
-            * (
-                1
-                - p2
-                / 72
-                * (1 - p2 / 110 * (1 - p2 / 156 * (1 - p2 / 210 * (1 - p2 / 272 * (1 - p2 / 342)))))
-            )
-        )
-        return a, b
-    p = math.sqrt(p2)
-    half = math.sin(0.5 * p)
-    return 2.0 * half * half / p2, (p - math.sin(p)) / (p2 * p)
-
-
-@inlined
-def inverse_jacobian_coefficient(p2):
-    """D = 1/p^2 - (1 + cos p)/(2 p sin p) of p2 = p^2; singular at a full turn."""
-    if p2 < 1.0:
-        # sum of |B_2k| p^(2k-2) / (2k)!, the Bernoulli numbers
-        return 1 / 12 + p2 * (
-            1 / 720
-            + p2
-            * (
-                1 / 30240
-                + p2
-                * (
-                    1 / 1209600
-                    + p2
-                    * (
-                        1 / 47900160
-                        + p2
-                        * (
-                            691 / 1307674368000
-                            + p2
-                            * (
-                                1 / 74724249600
-                                + p2
-                                * (
-                                    3617 / 10670622842880000
-                                    + p2
-                                    * (
-                                        43867 / 5109094217170944000
-                                        + p2 * 174611.0 / 8.028576626982912e20
-                                    )
-                                )
-                            )
-                        )
-                    )
-                )
-            )
-        )
-    p = math.sqrt(p2)
-    return (1.0 - 0.5 * p / math.tan(0.5 * p)) / p2
-
-
-@inlined
-def right_jacobian(px, py, pz, x, y, z):
-    """Jr(p) v with p a rotation vector: Jr = I - A [p] + B [p]^2 (`jacobian_coefficients`)."""
-    a, b = jacobian_coefficients(px * px + py * py + pz * pz)
-    tx, ty, tz = cross(px, py, pz, x, y, z)
-    ux, uy, uz = cross(px, py, pz, tx, ty, tz)
-    return x - a * tx + b * ux, y - a * ty + b * uy, z - a * tz + b * uz
-
-
-@inlined
-def inverse_right_jacobian(px, py, pz, x, y, z):
-    """Jr(p)^-1 v = v + [p] v / 2 + D [p]^2 v."""
-    d = inverse_jacobian_coefficient(px * px + py * py + pz * pz)
-    tx, ty, tz = cross(px, py, pz, x, y, z)
-    ux, uy, uz = cross(px, py, pz, tx, ty, tz)
-    return x + 0.5 * tx + d * ux, y + 0.5 * ty + d * uy, z + 0.5 * tz + d * uz
-
-
-# Near-minimax polynomial in z = x^2 for atan(x)/x on |x| <= tan(pi/8): error 1.3e-18.
-A1, A2, A3, A4 = -0.3333333333333312, 0.1999999999994035, -0.14285714279197312, 0.11111110742286896
-A5, A6, A7, A8 = -0.0909089673297879, 0.0769204396500265, -0.06662936116136517, 0.058467627400560856
-A9, A10, A11 = -0.05034575594522044, 0.03795171422296338, -0.017790395523288063
-TAN_PI_8 = math.sqrt(2.0) - 1.0
-
-
-@inlined
-def arc_angle(a, b, c, d, e, f, g, h):
-    """The angle between unit quaternions and its sine and cosine: (theta, sin, cos), branch-free.
-
-    tan(theta/4) = |p - q| / (|p + q| + 2) loses nothing for small angles [0, pi].
-    """
-    dw, dx, dy, dz = a - e, b - f, c - g, d - h
-    pw, px, py, pz = a + e, b + f, c + g, d + h
-    minus = dw * dw + dx * dx + dy * dy + dz * dz
-    s = math.sqrt(minus)
-    m = math.sqrt(pw * pw + px * px + py * py + pz * pz)
-    n = m + 2.0
-    wide = s > TAN_PI_8 * n
-    x = (s - n if wide else s) / (s + n if wide else n)
-    z = x * x
-    r = (
-        (
-            (
-                (((((((A11 * z + A10) * z + A9) * z + A8) * z + A7) * z + A6) * z + A5) * z + A4)
-                * z
-                + A3
-            )
-            * z
-            + A2
-        )
-        * z
-        + A1
-    ) * z
-    theta = 4.0 * ((x + x * r) + (0.25 * math.pi if wide else 0.0))
-    return theta, 0.5 * s * m, 1.0 - 0.5 * minus
-
-
-@inlined
-def turn(a, b, c, d, e, f, g, h):
-    """|v| and v/|v| of v = log((a, b, c, d)^-1 (e, f, g, h)), |v| <= pi, branch-free; 0 for 0."""
-    theta, _, _ = arc_angle(a, b, c, d, e, f, g, h)
-    _, x, y, z = between(a, b, c, d, e, f, g, h)
-    scale = 1.0 / math.sqrt(x * x + y * y + z * z + TINY)
-    return theta, scale * x, scale * y, scale * z
-
-
-@inlined
-def slerp(a, b, c, d, e, f, g, h, u):
-    """The point at u on the great arc from (a, b, c, d) to (e, f, g, h), no sign flip.
-
-    Near antipodes it loses digits, and length: `nested.restored` gives that back.
-    """
-    theta, sine, cosine = arc_angle(a, b, c, d, e, f, g, h)
-    s, k = sincos(u * theta)
-    q = s / max(sine, ANTIPODAL_SINE if cosine < 0.0 else TINY)
-    p = k - cosine * q
-    return p * a + q * e, p * b + q * f, p * c + q * g, p * d + q * h
+def arctan(y, x):
+    """atan(y/x) for 0 <= y <= x, branch-free."""
+    wide = y > TAN_PI_8 * x
+    t = (y - x if wide else y) / (y + x if wide else x)
+    return (t + t * arctan_series(t * t)) + (0.25 * math.pi if wide else 0.0)

@@ -1,4 +1,4 @@
-"""What the wrappers of third-party schemes share: silence, versions, frames, pairs of keyframes.
+"""What all wrappers of third-party schemes share: silence, frames, the return of a closed curve.
 
 A wrapper calls the library as its documentation says, on its fastest documented path, and changes
 nothing but the form of numbers: times since the first keyframe, quaternions (m, 4) scalar first, rates
@@ -89,90 +89,9 @@ def with_return(keyframes: Keyframes) -> FloatArray:
     return np.concatenate([q, keyframes.sign * q[:1]]) if keyframes.closed else q
 
 
-def pairs(knots: FloatArray, t: FloatArray) -> tuple[Any, FloatArray]:
-    """Segment and local parameter of each time, for libraries that interpolate between two."""
-    segment = np.clip(np.searchsorted(knots, t, side="right") - 1, 0, len(knots) - 2)
-    return segment, (t - knots[segment]) / (knots[segment + 1] - knots[segment])
-
-
-def reflected(keyframes: Keyframes) -> tuple[FloatArray, FloatArray]:
-    """Keyframes (n + 2, 4) and times (n + 3,) that put the wrap of an always closed library outside.
-
-    Both ends get a reflected phantom, q_{-1} = q_0 q_1^{-1} q_0 at t_{-1} = 2 t_0 - t_1, so that no
-    segment between given keyframes meets the wrap of a curve that four keyframes shape.
-    """
-    q, t = keyframes.quaternions, keyframes.knots
-    before = _mirror(q[0], q[1])
-    after = _mirror(q[-1], q[-2])
-    last = 2.0 * t[-1] - t[-2]
-    times = np.concatenate([[2.0 * t[0] - t[1]], t, [last, last + t[-1] - t[-2]]])
-    return np.concatenate([before[None], q, after[None]]), times
-
-
-def _mirror(a: FloatArray, b: FloatArray) -> FloatArray:
-    """The point that follows b, a on their great arc at the same step: a b^-1 a."""
-    return quaternion.mul(quaternion.mul(a, quaternion.conj(b)), a)
-
-
 def body_frame(q: FloatArray, rates: FloatArray) -> FloatArray:
     """World rates (m, 3) at orientations q (m, 4), seen from the body.
 
     The same turn serves acceleration: the frame's own turning drops out because omega x omega = 0.
     """
     return quaternion.rotate(quaternion.conj(q), rates)
-
-
-def unit_quaternions(q: FloatArray) -> list[Any]:
-    """Rows (w, x, y, z) as quaternions of the package `splines`."""
-    from splines.quaternion import UnitQuaternion
-
-    return [UnitQuaternion.from_unit_xyzw((x, y, z, w)) for w, x, y, z in q.tolist()]
-
-
-def rows(quaternions: Any, first: FloatArray) -> FloatArray:
-    """Quaternions of `splines` as rows (m, 4), in the sign of our first keyframe.
-
-    The package flips a first keyframe with negative scalar part ("canonicalized").
-    """
-    sign = -1.0 if first[0] < 0.0 else 1.0
-    return sign * np.array([q.wxyz for q in quaternions], dtype=float).reshape(-1, 4)
-
-
-def published_velocity(curve: Any, t: FloatArray, orientation: FloatArray) -> FloatArray:
-    """``evaluate(t, 1)`` of a curve of `splines`, world frame, in the body frame (m, 3)."""
-    with quiet():
-        return body_frame(orientation, np.array([curve.evaluate(x, 1) for x in t], dtype=float))
-
-
-class InterpolatePyCurve(PeerCurve):
-    """What the curves of InterpolatePy share: one call a sample, rates in the world frame."""
-
-    peer = "InterpolatePy"
-    reference = "interpolatepy"
-    closable = False
-    orders = (0, 1, 2)
-
-    def _construct(self, curve: type, *arguments: Any) -> None:
-        """Call a class of the library; some flip all signs, so ours is read off the first key."""
-        from interpolatepy import Quaternion
-
-        keyframes = self._keyframes
-        q = [Quaternion(*row) for row in keyframes.quaternions.tolist()]
-        self.curve = curve(keyframes.knots.tolist(), q, *arguments)
-        self.sign = 1.0
-        first = self._orientation(keyframes.knots[:1])[0]
-        self.sign = -1.0 if first @ keyframes.quaternions[0] < 0.0 else 1.0
-
-    def _orientation(self, t: FloatArray) -> FloatArray:
-        q = [(p.w, p.x, p.y, p.z) for p in map(self.curve.evaluate, t.tolist())]
-        return self.sign * np.array(q, dtype=float).reshape(-1, 4)
-
-    def _velocity(self, t: FloatArray) -> FloatArray:
-        return self._rates(self.curve.evaluate_velocity, t)
-
-    def _acceleration(self, t: FloatArray) -> FloatArray:
-        return self._rates(self.curve.evaluate_acceleration, t)
-
-    def _rates(self, evaluate: Any, t: FloatArray) -> FloatArray:
-        world = np.array([evaluate(x) for x in t.tolist()], dtype=float).reshape(-1, 3)
-        return body_frame(self._orientation(t), world)

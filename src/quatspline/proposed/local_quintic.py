@@ -6,9 +6,11 @@ from typing import Annotated
 
 import numpy as np
 
-from quatspline.families.rotation_vector import ROTATION_VECTOR, set_base, set_end_rates
+from quatspline.families.rotation_vector import ROTATION_VECTOR, set_end_rates
 from quatspline.fitting.local_rates import chords, continued, local_rates
 from quatspline.kernels.jit import REACH, fit_kernel, inlined
+from quatspline.kernels.operations import Operations, Per
+from quatspline.kernels.values import put_vec, quat_at, vec_at
 from quatspline.keyframes import Keyframes
 from quatspline.options import AtMost, Count
 from quatspline.segments import SegmentCurve
@@ -43,7 +45,7 @@ class LocalQuinticSpline(SegmentCurve):
     support = 8
     constant_rate = "everywhere"
     family = ROTATION_VECTOR
-    operations = {"exps per sample": 1, "logs per keyframe": 3}
+    operations = Operations(exps=Per(sample=1), logs=Per(keyframe=3))
 
     def _fit(self, keyframes: Keyframes, *, window: Annotated[Count, AtMost(100)] = 3) -> None:
         self.order = 4 if window > 1 else 2
@@ -61,18 +63,19 @@ def FIT(q, h, closed, sign, parameters, segments, report):
     chords(points, x)
     rates = np.empty((n, 6))
     for i in range(n):
-        local_rates(x, gaps, closed, first + i, rates[i])
-    y = np.empty(15)
+        v, a = local_rates(x, gaps, closed, first + i)
+        put_vec(rates[i], 0, v)
+        put_vec(rates[i], 3, a)
+    reach = 0.0
     for i in range(h.size):
-        set_base(segments, i, q[i, 0], q[i, 1], q[i, 2], q[i, 3])
-        _ends(x[0, :, first + i], h[i], rates[i], rates[(i + 1) % n], y)
-        report[REACH] = max(report[REACH], set_end_rates(segments, i, y))
+        base, step = quat_at(q[i], 0), vec_at(x[0, :, first + i], 0)
+        start = _by_u(rates[i], h[i])
+        stop = _by_u(rates[(i + 1) % n], h[i])
+        reach = max(reach, set_end_rates(segments[i], base, step, *start, *stop))
+    report[REACH] = reach
 
 
 @inlined
-def _ends(chord, h, start, stop, y):
-    """What (1) and (2) need: L, h v_i, h^2 a_i, h v_{i+1}, h^2 a_{i+1}."""
-    for c in range(3):
-        y[c] = chord[c]
-        y[3 + c], y[6 + c] = h * start[c], h * h * start[3 + c]
-        y[9 + c], y[12 + c] = h * stop[c], h * h * stop[3 + c]
+def _by_u(rates, h):
+    """h v and h^2 a."""
+    return h * vec_at(rates, 0), (h * h) * vec_at(rates, 3)

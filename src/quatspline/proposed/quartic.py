@@ -6,6 +6,7 @@ import numpy as np
 
 from quatspline.families.cumulative import MIDDLE
 from quatspline.fitting.four_keyframes import FIT
+from quatspline.kernels.operations import Operations, Per
 from quatspline.keyframes import Keyframes
 from quatspline.segments import SegmentCurve
 
@@ -33,7 +34,7 @@ class QuarticSpline(SegmentCurve):
     support = 4
     constant_rate = "interior"
     family = MIDDLE
-    operations = {"exps per sample": 3, "logs per segment": 1}
+    operations = Operations(exps=Per(sample=3), logs=Per(segment=1))
 
     def _fit(self, keyframes: Keyframes) -> None:
         self._solve(FIT, np.array([3.0]))

@@ -1,89 +1,66 @@
-"""Operations: what schemes state that they execute, which no machine changes, and what that adds up to.
-
-A scheme states counts as {"exps per sample": 3, "logs per segment": 1, "slerps per inner keyframe and
-iteration": 2}.  Units of a solve are sample; keyframe; inner keyframe, one with neighbours on both sides (all
-of a closed curve); segment; knot, an end of segments (a closed curve's last is its first again); solve.
-"""
+"""What the operations that schemes state add up to, for a curve's keyframes, iterations and samples."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable
 from typing import NamedTuple
 
 from quatspline.curve import Curve
+from quatspline.kernels.operations import UNSTATED, Operations, Per
 
 OPERATIONS = ("slerps", "exps", "logs")
+"""The kinds that tables count."""
 
-SAMPLE = "sample"
-
-SET_UP = ("keyframe", "inner keyframe", "segment", "knot")
-"""Units of a set-up of which there is about one per keyframe."""
-
-AGAIN = " and iteration"
-
-
-class Stated(NamedTuple):
-    """So many of an operation per unit; ``iterated``: in every iteration."""
-
-    operation: str
-    number: float
-    unit: str
-    iterated: bool
+Counts = dict[str, float]
 
 
 class Executed(NamedTuple):
     """Counts by operation: of updates of an iteration and of samples; and of the rest, which is set-up and
     what an iteration does before its first update and after its last."""
 
-    updates: dict[str, float]
-    rest: dict[str, float]
+    updates: Counts
+    rest: Counts
 
     @property
-    def total(self) -> dict[str, float]:
+    def total(self) -> Counts:
         """Both."""
         return {key: number + self.rest[key] for key, number in self.updates.items()}
-
-
-def stated(operations: Mapping[str, float]) -> list[Stated]:
-    """The entries of a scheme's ``operations``."""
-    found = []
-    for key, number in operations.items():
-        operation, _, unit = key.partition(" per ")
-        found.append(Stated(operation, number, unit.removesuffix(AGAIN), unit.endswith(AGAIN)))
-    return found
 
 
 def executed(curve: Curve, samples: int, solves: int = 1) -> Executed:
     """What a single-track curve takes that is solved so often, as its own solve went, and sampled so often.
 
     Operations other than `OPERATIONS` are left out.
-
-    Raises
-    ------
-    ValueError
-        Where a scheme counts them per unit that is not known.
     """
-    units = {unit: solves * number for unit, number in _units(curve).items()} | {SAMPLE: samples}
-    counts = Executed(dict.fromkeys(OPERATIONS, 0.0), dict.fromkeys(OPERATIONS, 0.0))
-    for entry in stated(curve.operations):
-        if entry.operation in OPERATIONS:
-            if entry.unit not in units:
-                known = ", ".join(units)
-                raise ValueError(f"operations of {curve.name}: {entry.unit!r} is none of {known}")
-            part = counts.updates if entry.iterated or entry.unit == SAMPLE else counts.rest
-            times = iterations(curve) if entry.iterated else 1
-            part[entry.operation] += entry.number * units[entry.unit] * times
-    return counts
+
+    def set_up(per: Per) -> float:
+        return solves * _of_a_solve(per, curve)
+
+    own, updates = curve.operations, _updates(curve)
+    sampled = _counted(own, lambda per: samples * per.sample)
+    updated = _counted(updates, lambda per: iterations(curve) * set_up(per))
+    return Executed(_sum(sampled, updated), _counted(own, set_up))
 
 
-def per_keyframe(curve: Curve) -> dict[str, float]:
+def per_keyframe(curve: Curve) -> Counts:
     """Operations of a set-up per keyframe of many, those of all iterations included."""
-    return _one_of(curve, SET_UP)
+    updates = _counted(_updates(curve), lambda per: iterations(curve) * of_a_keyframe(per))
+    return _sum(_counted(curve.operations, of_a_keyframe), updates)
 
 
-def per_sample(curve: Curve) -> dict[str, float]:
+def per_sample(curve: Curve) -> Counts:
     """Operations of a sample."""
-    return _one_of(curve, (SAMPLE,))
+    return _counted(curve.operations, of_a_sample)
+
+
+def of_a_sample(per: Per) -> float:
+    """The count of a sample."""
+    return per.sample
+
+
+def of_a_keyframe(per: Per) -> float:
+    """Counts of the units of a set-up of which there is about one per keyframe."""
+    return per.keyframe + per.inner_keyframe + per.segment + per.knot
 
 
 def iterations(curve: Curve) -> int:
@@ -91,22 +68,20 @@ def iterations(curve: Curve) -> int:
     return int(curve.solve_report.iterations) if curve.solve_report is not None else 0
 
 
-def _one_of(curve: Curve, units: tuple[str, ...]) -> dict[str, float]:
-    counts = dict.fromkeys(OPERATIONS, 0.0)
-    for entry in stated(curve.operations):
-        if entry.operation in OPERATIONS and entry.unit in units:
-            counts[entry.operation] += entry.number * (iterations(curve) if entry.iterated else 1)
-    return counts
-
-
-def _units(curve: Curve) -> dict[str, int]:
-    """How many there are of each unit in one solve."""
+def _of_a_solve(per: Per, curve: Curve) -> float:
     count, segments = curve.keyframes.count, curve.keyframes.spacings.size
     inner = count if curve.closed else max(count - 2, 0)
-    return {
-        "keyframe": count,
-        "inner keyframe": inner,
-        "segment": segments,
-        "knot": segments + 1,
-        "solve": 1,
-    }
+    each = per.keyframe * count + per.inner_keyframe * inner
+    return each + per.segment * segments + per.knot * (segments + 1) + per.solve
+
+
+def _updates(curve: Curve) -> Operations:
+    return curve.operations.iteration or UNSTATED
+
+
+def _counted(operations: Operations, count: Callable[[Per], float]) -> Counts:
+    return {kind: float(count(operations.kinds[kind])) for kind in OPERATIONS}
+
+
+def _sum(a: Counts, b: Counts) -> Counts:
+    return {kind: a[kind] + b[kind] for kind in OPERATIONS}

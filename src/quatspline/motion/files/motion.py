@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from quatspline import quaternion
 from quatspline.inputs import stamps
-from quatspline.keyframes import prepare
+from quatspline.keyframes import prepare, segment_of
 from quatspline.quaternion import FloatArray
 
 REPEATED = 1e-6
@@ -100,7 +100,7 @@ def _between(t: FloatArray, knots: FloatArray, x: FloatArray) -> FloatArray:
 
     Differences are halved, since those of finite positions, and slopes even more so, may overflow.
     """
-    i = np.clip(np.searchsorted(knots, t, side="right") - 1, 0, len(knots) - 2)
+    i = segment_of(knots, t)
     u = ((t - knots[i]) / (knots[i + 1] - knots[i]))[:, np.newaxis]
     step = u * (x[i + 1] / 2 - x[i] / 2)
     return np.where(u < 1.0, x[i] + step + step, x[i + 1])

@@ -1,0 +1,190 @@
+"""How a family of curves is made: the mathematics of one sample in, kernels that evaluate blocks out.
+
+A family says what the constants of a segment mean.  Its functions take them as a row ``c`` with the local
+parameter u in [0, 1], and return a `Quat` or a `Vec`; they also run as plain Python, on one row of
+a curve's ``segments``:
+
+    point(c, u)          the orientation Q(u)
+    jet(c, u)            (Q, Q', Q''), derivatives in R^4 by u: rates follow from it; or both of
+    velocity(c, u)       vec(~Q Q'), half the body velocity by u
+    acceleration(c, u)   its derivative by u, half the body acceleration
+
+The loop over the samples of a block is written here, once.  numba's cache cannot tell closures that hold
+functions apart; so a loop is copied for each function, which it finds as a global, under
+that function's file and a name of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from types import FunctionType
+from typing import Any
+
+from numba import carray
+
+from quatspline.kernels.jit import (
+    BLOCK,
+    CONSTANTS,
+    RESULT,
+    ROWS,
+    Kernel,
+    inlined,
+    sample_kernel,
+)
+from quatspline.kernels.values import put_quat, put_vec, quat_at, restored, vec
+
+Kernels = tuple[Kernel, Kernel, Kernel]
+
+ROUGH = 5e-7
+"""Squares of lengths off 1 by more than this are restored by a root: to 1e-13 without one."""
+
+
+@dataclass(frozen=True)
+class Family:
+    """The sample kernels that evaluate one layout of constants; made by `family`.
+
+    Attributes
+    ----------
+    constants : numbers per segment
+    near : kernels for orders 0, 1, 2 where every half angle stays within `scalars.NEAR`
+    far : kernels for any angle
+    """
+
+    constants: int
+    near: Kernels
+    far: Kernels
+
+    def __post_init__(self) -> None:
+        if self.constants > RESULT - CONSTANTS:  # kernels would write into the result's rows
+            raise ValueError(
+                f"{self.constants} constants per segment: a sheet has {RESULT - CONSTANTS} rows for them"
+            )
+
+
+def family(
+    constants: int,
+    point: Callable[..., Any],
+    *,
+    jet: Callable[..., Any] | None = None,
+    velocity: Callable[..., Any] | None = None,
+    acceleration: Callable[..., Any] | None = None,
+    spare: Callable[..., Any] | None = None,
+    far: Family | None = None,
+) -> Family:
+    """Make a family from functions of one sample; see the module.
+
+    Parameters
+    ----------
+    constants
+        Numbers per segment, at most as many as a sheet has rows for them.
+    point, jet, velocity, acceleration
+        The functions, each decorated with `inlined`.
+    spare
+        Where the point is nearly of unit length: what restores it.  A point off by more than rounding is
+        normalised or, where it has no length left, replaced by ``spare(c, u)``.
+    far
+        The family of the same constants for any angle, where this one is only for near ones.
+    """
+    count = exactly
+    if jet is not None:
+        velocity, acceleration = (inlined(_bound(f, FUNCTION=jet)) for f in (_first, _second))
+        count = whole
+    if velocity is None or acceleration is None:
+        raise TypeError("a family needs a jet, or a velocity and an acceleration")
+    if spare is None:
+        orientation = _bound(_orientation, FUNCTION=point)
+    else:
+        orientation = _bound(_unit_orientation, FUNCTION=point, SPARE=spare)
+    near = (
+        sample_kernel(orientation),
+        sample_kernel(_bound(_velocity, FUNCTION=velocity, COUNT=count)),
+        sample_kernel(_bound(_acceleration, FUNCTION=acceleration, COUNT=count)),
+    )
+    return Family(constants, near=near, far=near if far is None else far.near)
+
+
+@inlined
+def exactly(n):
+    """n samples."""
+    return n
+
+
+@inlined
+def whole(n):
+    """n samples rounded up to whole vectors (of 8): a loop without a remainder.
+
+    The remainder of a long loop body may be contracted otherwise than its vectors, and a sample's last
+    digits would depend on its neighbours.  BLOCK is a multiple, so that the sheet has room.
+    """
+    return (n + 7) & -8
+
+
+def _bound(template: Callable[..., Any], **functions: Callable[..., Any]) -> Callable[..., Any]:
+    """A copy of a template with functions as globals, in the file and at the line of the first."""
+    first, *_ = functions.values()
+    name = "_".join([called(f) for f in functions.values()]) + template.__name__
+    code = template.__code__.replace(
+        co_filename=first.__code__.co_filename,
+        co_firstlineno=first.__code__.co_firstlineno,
+        co_name=name,
+        co_qualname=name,
+    )
+    return FunctionType(code, {**template.__globals__, **functions}, name)
+
+
+def called(function: Callable[..., Any]) -> str:
+    """A name that tells a function from others of the same code: its own, and what it closes over."""
+    held = (cell.cell_contents for cell in function.__closure__ or ())
+    parts = (called(x) if isinstance(x, FunctionType) else repr(x) for x in held)
+    return "_".join([function.__name__, *parts])
+
+
+FUNCTION: Any = None
+SPARE: Any = None
+COUNT: Any = None
+"""What a copy of a template finds in their place."""
+
+
+def _orientation(sheet, n):
+    s = carray(sheet, (ROWS, BLOCK))
+    for j in range(n):
+        put_quat(s[RESULT:, j], 0, FUNCTION(s[CONSTANTS:RESULT, j], s[0, j]))
+
+
+def _unit_orientation(sheet, n):
+    s = carray(sheet, (ROWS, BLOCK))
+    rough = 0
+    for j in range(n):
+        q = FUNCTION(s[CONSTANTS:RESULT, j], s[0, j])
+        # off by e, 1.5 - |q|^2 / 2 restores the length to 3/2 e^2, without a root and a division
+        fine = abs(q @ q - 1.0) <= ROUGH
+        put_quat(s[RESULT:, j], 0, (1.5 - 0.5 * (q @ q) if fine else 1.0) * q)
+        rough += 0 if fine else 1
+    if rough > 0:
+        for j in range(n):
+            spare = SPARE(s[CONSTANTS:RESULT, j], s[0, j])
+            put_quat(s[RESULT:, j], 0, restored(quat_at(s[RESULT:, j], 0), spare))
+
+
+def _velocity(sheet, n):
+    s = carray(sheet, (ROWS, BLOCK))
+    for j in range(COUNT(n)):
+        put_vec(s[RESULT:, j], 0, (2.0 * s[1, j]) * FUNCTION(s[CONSTANTS:RESULT, j], s[0, j]))
+
+
+def _acceleration(sheet, n):
+    s = carray(sheet, (ROWS, BLOCK))
+    for j in range(COUNT(n)):
+        rate = 2.0 * s[1, j] * s[1, j]
+        put_vec(s[RESULT:, j], 0, rate * FUNCTION(s[CONSTANTS:RESULT, j], s[0, j]))
+
+
+def _first(c, u):
+    q, q1, _ = FUNCTION(c, u)
+    return vec(~q * q1)
+
+
+def _second(c, u):
+    q, _, q2 = FUNCTION(c, u)
+    return vec(~q * q2)
