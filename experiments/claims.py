@@ -159,8 +159,10 @@ def _spins(cls: type[Curve]) -> list[tuple[Any, ...]]:
 
 
 def _regimes(run: Run, cls: type[Curve], in_part: bool) -> dict[str, list[Probe]]:
-    """Probes of continuity by step angle and kind of times, fewest keyframes first; in part, those of the
-    fewest that are cheap: libraries take most of the time."""
+    """Probes of continuity by step angle and kind of times, fewest keyframes first.
+
+    In part, those of the fewest that are cheap: libraries take most of the time.
+    """
     angles, (counts, seeds) = (60, 120, 170), ((4,), 1) if in_part else ((3, 4, 6), 3)
     takes = (False, True) if cls.non_uniform else (False,)
     return {

@@ -115,6 +115,7 @@ def adopt(results: Path) -> None:
 
 
 def main() -> None:
+    """Renew the quotes, of adopted results where there are any."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--adopt", type=Path, metavar="RESULTS")
     arguments = parser.parse_args()

@@ -65,8 +65,10 @@ CHECKED = {"everywhere": "truth", "interior": "truth inside", "no": "keys"}
 
 
 def _claim(case: EdgeCase, curve: Curve | type[Curve]) -> str:
-    """The claim of a constant rate, as far as the case tries it: a curve at rest has to stay, one that closes
-    has no ends."""
+    """The claim of a constant rate, as far as the case tries it.
+
+    A curve at rest has to stay, one that closes has no ends.
+    """
     if not _moves(case) or (case.closed and curve.constant_rate == "interior"):
         return "everywhere"
     return curve.constant_rate

@@ -49,8 +49,10 @@ def facts(curve: Curve) -> Row:
 
 
 def attempted(measure: Callable[[], list[Row]], **given: Any) -> list[Row]:
-    """The rows measured, after what is given of each; for what does not apply or fails, one row with its
-    reason."""
+    """The rows measured, after what is given of each.
+
+    For what does not apply or fails, one row with its reason.
+    """
     try:
         rows = measure()
     except Exception as error:  # whatever a scheme raises is a result

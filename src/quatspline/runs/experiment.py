@@ -72,7 +72,7 @@ class Run:
 
     @property
     def size(self) -> Size:
-        """ "quick" or "full"."""
+        """The name of the size: "quick" or "full"."""
         return QUICK if self.quick else FULL
 
     @property

@@ -41,8 +41,10 @@ class Task:
 
 @dataclass(frozen=True)
 class Cost:
-    """Seconds of a call: median and interquartile range over rounds (NaN for a single one), or why
-    there are none."""
+    """Seconds of a call, or why there are none.
+
+    Median and interquartile range over rounds (NaN for a single one).
+    """
 
     seconds: float = math.nan
     iqr: float = math.nan
@@ -106,10 +108,10 @@ def _whole(task: Task, size: int) -> Call:
 
 
 def peak_bytes(call: Call) -> float:
-    """Growth of the resident memory during a call at its highest, its result included; NaN where
-    the system does not tell (it is read from Linux's /proc).
+    """Growth of the resident memory during a call at its highest, its result included.
 
-    Counts what compiled code allocates too, which tracemalloc does not see.
+    NaN where the system does not tell: it is read from Linux's /proc.  Counts
+    what compiled code allocates too, which tracemalloc does not see.
     """
     call()  # pages of code and caches are in
     try:

@@ -243,8 +243,10 @@ print(time.perf_counter() - start)
 
 
 def starts(rounds: int, quick: bool) -> Iterator[tuple[str, list[float]]]:
-    """Seconds in new processes: the import; a first curve and sample from cached code, in full size also
-    compiling it."""
+    """Seconds in new processes: the import; a first curve and sample from cached code.
+
+    In full size also with its compilation.
+    """
     yield "import quatspline", [_seconds(_IMPORT) for _ in range(rounds)]
     yield "first sample, code cached", [_seconds(_FIRST) for _ in range(rounds)]
     if quick:
