@@ -69,7 +69,7 @@ def _add_sample(commands: Any) -> None:
     _add_keyframes(sample)
     sample.add_argument("--scheme", required=True, metavar="S", help="see quatspline list")
     grid = sample.add_mutually_exclusive_group(required=True)
-    grid.add_argument("--rate", type=_rate, metavar="HZ", help="samples per time unit")
+    grid.add_argument("--rate", type=_rate, metavar="HZ", help="samples per second")
     grid.add_argument(
         "--count", type=_count, metavar="N", help="samples in all, both ends included"
     )

@@ -11,6 +11,7 @@ import errno
 import os
 import sys
 import traceback
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -22,7 +23,7 @@ from quatspline.system.stdout import STDOUT, say
 
 if TYPE_CHECKING:
     from quatspline.catalogue import Found
-    from quatspline.motion.files import Motion
+    from quatspline.motion import Motion
 
 DONE, FAILED, INTERRUPTED = 0, 1, 130
 
@@ -175,8 +176,8 @@ def _report(arguments: argparse.Namespace) -> int:
 
 def _sample(arguments: argparse.Namespace) -> int:
     from quatspline import catalogue
-    from quatspline.cli.grid import sample_times
     from quatspline.motion import files
+    from quatspline.motion.motion_curve import grid, sampled
 
     catalogue.scheme(arguments.scheme)  # a wrong name is told before a long file is read
     if arguments.file is not None:
@@ -185,32 +186,47 @@ def _sample(arguments: argparse.Namespace) -> int:
             raise ValueError(f"{arguments.file}: is read here, so it is not written over")
     motion = _motion(arguments)
     with _naming(arguments.keyframes):
-        curve = catalogue.build(
-            arguments.scheme, motion.times, motion.quaternions, closed=arguments.closed
-        )
-    times = sample_times(*curve.domain, arguments.rate, arguments.count)
-    samples = motion.sampled(times, curve(times))
+        curve = motion.curve(arguments.scheme, closed=arguments.closed)
+    samples = sampled(curve, grid(curve, arguments.rate, arguments.count))
     if motion.unread:
         _note(f"{arguments.keyframes}: not carried: {', '.join(map(repr, motion.unread))}")
     if arguments.file is None:
         with naming(STDOUT):
             files.write_csv(sys.stdout, samples)
     else:
-        files.write(arguments.file, samples)
+        with _noted():
+            files.write(arguments.file, samples)
     return DONE
 
 
 def _motion(arguments: argparse.Namespace) -> Motion:
     from quatspline.keyframes import prepare
-    from quatspline.motion import files
+    from quatspline.motion import closing, files
 
-    motion = files.read(arguments.keyframes)
+    with _noted():
+        motion = files.read(arguments.keyframes)
     with _naming(arguments.keyframes):
-        motion = motion.returning() if arguments.closed else motion.opened()
-        prepare(motion.times, motion.quaternions, closed=arguments.closed)
+        motion = closing.returning(motion) if arguments.closed else closing.opened(motion)
+        prepare(motion.stamps, motion.quaternions, closed=arguments.closed)
     if motion.note:
         _note(f"{arguments.keyframes}: {motion.note}")
     return motion
+
+
+@contextmanager
+def _noted() -> Iterator[None]:
+    """Warnings of what a file lost or left open are lines on stderr, once each."""
+    from quatspline.motion import MotionFileWarning
+
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always", MotionFileWarning)
+        yield
+    ours = [item for item in told if issubclass(item.category, MotionFileWarning)]
+    for line in dict.fromkeys(str(item.message) for item in ours):
+        _note(line)
+    for other in told:
+        if other not in ours:
+            warnings.warn_explicit(other.message, other.category, other.filename, other.lineno)
 
 
 @contextmanager

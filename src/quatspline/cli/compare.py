@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from quatspline.curve import Curve
     from quatspline.findings.findings import Finding
     from quatspline.keyframes import Keyframes
-    from quatspline.motion.files import Motion
+    from quatspline.motion import Motion
     from quatspline.runs.results import Results
 
 FILES = [
@@ -48,7 +48,7 @@ def command(
     from quatspline.page.sections import OWN
 
     began = time.perf_counter()
-    keyframes = comparing.prepared(motion.times, motion.quaternions, closed)
+    keyframes = comparing.prepared(motion.stamps, motion.quaternions[:, 0], closed)
     results.begin(call, schemes=list(schemes) if schemes is not None else None)
     table, curves = comparing.compared(keyframes, schemes)
     table = results.table(
@@ -64,7 +64,8 @@ def command(
     entry = {"title": comparing.TITLE, "size": f"{keyframes.count} keyframes", "seed": None}
     results.record("compare", entry | {"seconds": round(time.perf_counter() - began, 3)})
     results.finish()
-    scene = own_scene("own", "Your keyframes", keyframes, motion.positions, names)
+    places = None if motion.positions is None else motion.positions[:, 0]
+    scene = own_scene("own", "Your keyframes", keyframes, places, names)
     page = write_page(results, title=comparing.TITLE, scenes=[scene], sections=OWN, findings=found)
     print(page, file=sys.stderr)
     return 0
