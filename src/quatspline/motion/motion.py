@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 Times = NDArray[Any]
 """(n,) float64, or int64 where stamps are integers that float64 does not hold."""
 
+UNITS = (1, 10**3, 10**6, 10**9)
+"""Units of stamps in a second."""
+
 BODY = ("body",)
 """The one track of a motion without a skeleton."""
 
@@ -249,6 +252,12 @@ def _check_shapes(motion: Motion) -> None:
     if q.shape[1:] != (tracks, 4) or n - len(q) not in (0, 1) or not len(q):
         raise ValueError(
             f"quaternions has shape {q.shape}: expected ({n}, {tracks}, 4) for {n} stamps, {tracks} tracks"
+        )
+    if motion.per_second not in UNITS:
+        raise ValueError(f"per_second = {motion.per_second}: one of {UNITS} is expected")
+    if motion.skeleton is not None and len(motion.skeleton.parents) != tracks:
+        raise ValueError(
+            f"the skeleton has {len(motion.skeleton.parents)} joints for {tracks} tracks"
         )
     if x is not None and x.shape != (n, tracks, 3):
         raise ValueError(f"positions has shape {x.shape}: expected ({n}, {tracks}, 3)")

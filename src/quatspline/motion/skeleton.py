@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quatspline import quaternion
+from quatspline.motion.euler import AXES
 from quatspline.quaternion import FloatArray
 
 ROOT = -1
@@ -43,6 +44,25 @@ class Skeleton:
     orders: tuple[str, ...]
     ends: Mapping[int, FloatArray] = field(default_factory=dict)
     mounts: Mounts | None = None
+
+    def __post_init__(self) -> None:
+        joints = len(self.parents)
+        shapes = {"offsets": (joints, 3), "orders": (joints,)}
+        for name, shape in shapes.items():
+            found = np.shape(getattr(self, name))
+            if found != shape:
+                raise ValueError(f"{name} has shape {found}: expected {shape}")
+        if not set(self.ends) <= set(range(joints)):
+            raise ValueError("ends do not belong to the joints")
+        tips = np.array([*self.ends.values(), *self.offsets])
+        if not np.isfinite(tips).all():
+            raise ValueError("offsets: not finite numbers")
+        for joint, order in enumerate(self.orders):
+            if not set(order) <= set(AXES) or len(set(order)) < len(order):
+                raise ValueError(
+                    f"orders[{joint}] = {order!r}: X, Y and Z at most once are expected"
+                )
+        self.outward  # noqa: B018 refuses joints that hang on each other
 
     @cached_property
     def outward(self) -> list[int]:

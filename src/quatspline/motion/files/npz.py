@@ -128,18 +128,12 @@ def _more(arrays: dict[str, Array], tracks: int) -> dict[str, Any]:
 
 def _skeleton(arrays: dict[str, Array], tracks: int) -> Skeleton:
     parents, offsets, orders, joints, ends = (arrays[name] for name in OF_SKELETON)
-    shapes = {"parents": (tracks,), "offsets": (tracks, 3), "orders": (tracks,)}
-    for (name, wanted), array in zip(shapes.items(), (parents, offsets, orders), strict=True):
-        if array.shape != wanted:
-            raise ValueError(f"{name} has shape {array.shape}: expected {wanted}")
+    if parents.shape != (tracks,):
+        raise ValueError(f"parents has shape {parents.shape}: expected {(tracks,)}")
     if ends.shape != (len(joints), 3) or not set(joints.tolist()) <= set(range(tracks)):
         raise ValueError("end_joints and ends do not belong to the tracks")
     tips = dict(zip(map(int, joints), ends.astype(float), strict=True))
-    skeleton = Skeleton(
-        parents.astype(np.int64), offsets.astype(float), tuple(orders.tolist()), tips
-    )
-    skeleton.outward  # noqa: B018 refuses joints that hang on each other
-    return skeleton
+    return Skeleton(parents.astype(np.int64), offsets.astype(float), tuple(orders.tolist()), tips)
 
 
 def _times(path: Path, t: Array) -> Times:
