@@ -121,6 +121,7 @@ def draw(table: pd.DataFrame) -> Figure:
 SPAN = 8.0
 """Ratios to slerp beyond which a colour says no more."""
 DARK = 3.5
+"""Ratios beyond this, or its inverse, are written in white."""
 TICKS = {1 / 8: "1/8", 1 / 2: "1/2", 2.0: "2", 8.0: "8"}
 
 

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator
 
 from quatspline import catalogue
 from quatspline.figures import style
@@ -86,8 +87,12 @@ def draw(table: pd.DataFrame) -> Figure:
         _lines(shares, _shares(rows))
         _lines(ratios, rows[rows["clip"] == ALL].set_index("error_degrees"), "over_slerp")
         title = "as recorded" if each == RAW else f"below {each}"
-        shares.set(title=title, yscale="log", ylabel="keyframes a frame" if k == 0 else "")
+        shares.set(title=title, yscale="log", ylabel="keyframes per frame" if k == 0 else "")
         ratios.set(title=title, ylabel="keyframes over slerp's" if k == 0 else "")
+        shares.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        shares.yaxis.set_major_formatter("{x:g}")
+    panels[0, 0].sharey(panels[0, len(filters) - 1])
+    panels[0, len(filters)].sharey(panels[0, -1])
     for ax in panels[0]:
         ax.set_xscale("log")
         ax.set_xticks(sorted(table["error_degrees"].unique()), labels=None)

@@ -44,14 +44,17 @@ def names() -> list[str]:
 
 def files() -> dict[str, Path]:
     """The files of the folder by name; none where no folder is named."""
-    if not (named := os.environ.get(FOLDER)):
-        return {}
-    folder = Path(named)
-    listed = sorted(folder.iterdir()) if folder.is_dir() else []
-    found = {path.name: path for path in listed if path.suffix.lower() in SUFFIXES}
-    if not found:
+    found = {path.name: path for path in contents() if path.suffix.lower() in SUFFIXES}
+    if not found and (named := os.environ.get(FOLDER)):
         raise ValueError(f"{FOLDER}={named}: no folder with motion files")
     return found
+
+
+def contents() -> list[Path]:
+    """All files of the folder, clips or what clips need; none where no folder is named or there."""
+    named = os.environ.get(FOLDER)
+    folder = Path(named) if named else None
+    return sorted(folder.iterdir()) if folder is not None and folder.is_dir() else []
 
 
 def clip(name: str) -> Motion:

@@ -1,9 +1,9 @@
 """A figure that walks: a recording that the project makes itself, for where no recorded clips are at hand.
 
 Channels follow the gait cycle: two harmonics of a phase whose pace and size waver from stride to stride.
-Knees, elbows and toes are hinges that reverse.  Upon each channel lies noise whose spectrum falls as a
-power of frequency: that of recorded joints falls so, too, and neither white noise nor a smooth motion makes
-schemes differ as little as they do on recordings.
+Knees, elbows and toes are hinges that reverse.  Upon each channel lies noise whose spectrum falls with a
+power of frequency, as that of recorded joints does; its size and power are such that schemes differ about as
+little as on recorded walks.
 """
 
 from __future__ import annotations
@@ -43,7 +43,12 @@ class Joint(NamedTuple):
     end: tuple[float, float, float] | None = None
 
 
-LIMB = {
+HIPS = {
+    "hips": Joint("", (0.0, 0.95, 0.0), {
+        "Y": (0.0, 5.0, 0.10, 1.0, 0.30), "X": (4.0, 1.0, 0.20, 1.5, 0.60),
+        "Z": (0.0, 4.0, 0.75, 1.0, 0.10)}),
+}  # fmt: skip
+LEG = {
     "thigh": Joint("hips", (0.09, -0.04, 0.0), {
         "X": (-8.0, 22.0, 0.00, 4.0, 0.30), "Y": (4.0, 4.0, 0.10, 2.0, 0.40),
         "Z": (2.0, 5.0, 0.60, 2.0, 0.10)}),
@@ -51,19 +56,8 @@ LIMB = {
     "foot": Joint("shin", (0.0, -0.41, 0.0), {
         "X": (-2.0, 8.0, 0.40, 8.0, 0.75), "Z": (1.0, 3.0, 0.20, 2.0, 0.60)}),
     "toes": Joint("foot", (0.0, -0.06, 0.14), {"X": (-10.0, 9.0, 0.55, 7.0, 0.20)}, (0.0, 0.0, 0.07)),
-    "upper arm": Joint("chest", (0.18, 0.20, 0.0), {
-        "X": (6.0, 17.0, 0.50, 2.0, 0.10), "Y": (5.0, 4.0, 0.45, 1.0, 0.00),
-        "Z": (8.0, 3.0, 0.20, 2.0, 0.50)}),
-    "forearm": Joint("upper arm", (0.0, -0.29, 0.0), {"X": (-28.0, 12.0, 0.55, 3.0, 0.30)}),
-    "hand": Joint("forearm", (0.0, -0.25, 0.0), {
-        "X": (-4.0, 4.0, 0.30, 2.0, 0.80), "Z": (3.0, 3.0, 0.10, 1.0, 0.60)}, (0.0, -0.18, 0.0)),
 }  # fmt: skip
-"""The left side; the right one is its mirror image, half a stride later."""
-
-TRUNK = {
-    "hips": Joint("", (0.0, 0.95, 0.0), {
-        "Y": (0.0, 5.0, 0.10, 1.0, 0.30), "X": (4.0, 1.0, 0.20, 1.5, 0.60),
-        "Z": (0.0, 4.0, 0.75, 1.0, 0.10)}),
+SPINE = {
     "spine": Joint("hips", (0.0, 0.12, 0.0), {
         "X": (3.0, 0.5, 0.00, 1.5, 0.15), "Y": (0.0, 4.0, 0.60, 0.5, 0.00),
         "Z": (0.0, 4.0, 0.25, 0.5, 0.50)}),
@@ -74,6 +68,15 @@ TRUNK = {
         "X": (-6.0, 1.0, 0.80, 1.5, 0.70), "Y": (0.0, 4.0, 0.10, 0.5, 0.50),
         "Z": (0.0, 1.5, 0.80, 0.5, 0.00)}, (0.0, 0.20, 0.02)),
 }  # fmt: skip
+ARM = {
+    "upper arm": Joint("chest", (0.18, 0.20, 0.0), {
+        "X": (6.0, 17.0, 0.50, 2.0, 0.10), "Y": (5.0, 4.0, 0.45, 1.0, 0.00),
+        "Z": (8.0, 3.0, 0.20, 2.0, 0.50)}),
+    "forearm": Joint("upper arm", (0.0, -0.29, 0.0), {"X": (-28.0, 12.0, 0.55, 3.0, 0.30)}),
+    "hand": Joint("forearm", (0.0, -0.25, 0.0), {
+        "X": (-4.0, 4.0, 0.30, 2.0, 0.80), "Z": (3.0, 3.0, 0.10, 1.0, 0.60)}, (0.0, -0.18, 0.0)),
+}  # fmt: skip
+"""Limbs are the left ones; the right ones are their mirror images, half a stride later."""
 
 
 def figure_walk(frames: int = 600, seed: int = SEED, noise: float = NOISE) -> Motion:
@@ -86,7 +89,8 @@ def figure_walk(frames: int = 600, seed: int = SEED, noise: float = NOISE) -> Mo
     noise : standard deviation (degrees) of each channel's noise
     """
     rng = np.random.default_rng(seed)
-    joints, names = _joints(), list(_joints())
+    joints = _joints()
+    names = list(joints)
     t = np.arange(frames) / RATE
     cycles = CADENCE * t + WAVER * _wandering(rng, frames, 2.0)
     q = np.empty((frames, len(names), 4))
@@ -102,11 +106,13 @@ def figure_walk(frames: int = 600, seed: int = SEED, noise: float = NOISE) -> Mo
 
 def _joints() -> dict[str, tuple[Joint, int]]:
     """All joints by name, with the side: 1 left, -1 right, 0 neither."""
-    joints = {name: (joint, 0) for name, joint in TRUNK.items()}
-    for word, side in (("left", 1), ("right", -1)):
-        for name, joint in LIMB.items():
-            parent = joint.parent if joint.parent in TRUNK else f"{word} {joint.parent}"
-            joints[f"{word} {name}"] = joint._replace(parent=parent), side
+    joints: dict[str, tuple[Joint, int]] = {}
+    for trunk, limb in ((HIPS, LEG), (SPINE, ARM)):
+        joints |= {name: (joint, 0) for name, joint in trunk.items()}
+        for word, side in (("left", 1), ("right", -1)):
+            for name, joint in limb.items():
+                parent = joint.parent if joint.parent in trunk else f"{word} {joint.parent}"
+                joints[f"{word} {name}"] = joint._replace(parent=parent), side
     return joints
 
 
