@@ -26,16 +26,18 @@ NOTE = (
     f"recorded. '{ALL}' takes the joints of all clips together. filter: what the truth is, the recording (none) or "
     "what a zero-phase Butterworth filter of its steps leaves. Angles are of local orientations at the frames left "
     "out, but for those within two keyframes of an end; lower is better. over_slerp: a joint's rms angle over slerp's, "
-    "geometric mean over the compared joints, on which all schemes ran that ran on half of the clip's. rms_degrees: "
-    "the joints' rms angle, median; worst_degrees: the largest, of worst_joint; largest_degrees: the largest angle of "
-    "all. end_cm: rms distance of end effectors, the root's path being the true one; omega, alpha: rms errors of "
-    "angular velocity and acceleration over the rms of the truth's, of filtered truth alone. Left out are joints that "
-    "turn less than 1 degree, fingers and thumbs, and those of pops, which turn faster than 1800 degrees a second "
-    "somewhere. Controls: euler-linear and euler-cubic interpolate Euler channels; 'tumble' is motion without noise, "
-    "'white noise' noise without motion."
+    "geometric mean over the compared joints, on which all schemes ran that ran on nine tenths of the clip's; "
+    "most_over_slerp: the largest. rms_degrees: the joints' rms angle, median; worst_degrees: the largest, of "
+    "worst_joint; largest_degrees: the largest angle of all. end_cm: rms distance of end effectors, the root's path "
+    "being the true one; omega, alpha: rms errors of angular velocity and acceleration over the rms of the truth's, of "
+    "filtered truth alone. Left out are joints that turn less than 1 degree, fingers and thumbs, and those of pops, "
+    "which turn faster than 1800 degrees a second somewhere. Controls: euler-linear and euler-cubic interpolate Euler "
+    "channels; 'tumble' is motion without noise, 'white noise' noise without motion."
 )
 FORMATS = {
-    **dict.fromkeys(("rms_degrees", "worst_degrees", "end_cm", "over_slerp"), ".3f"),
+    **dict.fromkeys(
+        ("rms_degrees", "worst_degrees", "end_cm", "over_slerp", "most_over_slerp"), ".3f"
+    ),
     **dict.fromkeys(("largest_degrees", "end_largest_cm"), ".2f"),
     **dict.fromkeys(("omega", "alpha"), ".3f"),
 }
@@ -138,7 +140,11 @@ def _order(table: pd.DataFrame) -> list[str]:
 
 
 def _text(ratio: float) -> str:
-    return "" if np.isnan(ratio) else np.format_float_positional(ratio, 2, fractional=False)
+    if np.isnan(ratio):
+        return ""
+    if ratio < 0.005:
+        return "<.01"
+    return f"{ratio:.2f}".lstrip("0") if ratio < 9.95 else f"{ratio:.0f}"
 
 
 def _title(name: str, filter: str) -> str:

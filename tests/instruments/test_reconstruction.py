@@ -201,12 +201,12 @@ def test_clips_are_the_files_of_a_folder(tmp_path: Path, monkeypatch: pytest.Mon
 
 
 def test_ratios_are_of_joints_on_which_all_ran() -> None:
-    """sqrt(2 * 8) on the first two joints; the third, on which one failed, counts for nobody."""
+    """2 and 8 on nine joints; the tenth, on which squad failed, counts for nobody; rare failed on too many."""
     lists = {
-        ("a", "slerp"): [1.0, 1.0, 1.0],
-        ("a", "kim"): [2.0, 8.0, 100.0],
-        ("a", "squad"): [1.0, 4.0, None],
-        ("a", "rare"): [1.0, None, None],
+        ("a", "slerp"): [1.0] * 10,
+        ("a", "kim"): [8.0] * 3 + [2.0] * 6 + [100.0],
+        ("a", "squad"): [4.0] * 9 + [None],
+        ("a", "rare"): [1.0] * 8 + [None] * 2,
         ("b", "slerp"): [2.0],
         ("b", "kim"): [1.0],
         ("control", "slerp"): [1.0],
@@ -217,13 +217,14 @@ def test_ratios_are_of_joints_on_which_all_ran() -> None:
     table = compared(pd.DataFrame(rows), ["clip", "scheme"], "slerp", {"control"})
     assert LISTS not in table
     table = table.set_index(["clip", "scheme"])
-    assert table.loc[("a", "kim"), "over_slerp"] == pytest.approx(4.0)
-    assert table.loc[("a", "squad"), "over_slerp"] == pytest.approx(2.0)
-    assert table.loc[("a", "kim"), "compared_joints"] == 2
+    assert table.loc[("a", "kim"), "over_slerp"] == pytest.approx(2.0 ** (15 / 9))
+    assert table.loc[("a", "kim"), "most_over_slerp"] == pytest.approx(8.0)
+    assert table.loc[("a", "squad"), "over_slerp"] == pytest.approx(4.0)
+    assert table.loc[("a", "kim"), "compared_joints"] == 9
     assert np.isnan(table.loc[("a", "rare"), "over_slerp"])
     assert table.loc[("control", "kim"), "over_slerp"] == pytest.approx(50.0)
-    assert table.loc[(ALL, "kim"), "over_slerp"] == pytest.approx(2.0)  # of 2, 8 and 1/2
-    assert table.loc[(ALL, "kim"), "compared_joints"] == 3
+    assert table.loc[(ALL, "kim"), "over_slerp"] == pytest.approx(2.0 ** (14 / 10))
+    assert table.loc[(ALL, "kim"), "compared_joints"] == 10
     assert table.loc[(ALL, "squad"), "failure"] == "on 1 of 2 clips only"
     assert np.isnan(table.loc[(ALL, "squad"), "over_slerp"])
     assert table.loc[("a", "broken"), "failure"] == "ValueError: no"

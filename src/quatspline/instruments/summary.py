@@ -10,8 +10,9 @@ import pandas as pd
 ALL = "all clips"
 """The clip whose rows take the joints of all clips together."""
 
-RAN = 0.5
-"""A scheme is compared on a clip where it ran on at least this share of the joints."""
+RAN = 0.9
+"""A scheme is compared on a clip where it ran on at least this share of the joints: one that fails on many would
+take them, the hardest, from all others' comparison."""
 
 LISTS = "by_joint"
 """The column of lists of what was measured of each joint, None where a scheme failed on it."""
@@ -22,8 +23,8 @@ def compared(
 ) -> pd.DataFrame:
     """The table with ratios in place of the lists of joints, and with rows of all clips together.
 
-    Adds columns ``over_`` and the reference's name, the geometric mean over joints of what was measured over
-    that of the reference, and ``compared_joints``, how many those are.
+    Adds, for a reference "slerp", columns over_slerp and most_over_slerp, the geometric mean and the largest over
+    joints of what was measured over that of slerp, and compared_joints, how many those are.
 
     Parameters
     ----------
@@ -38,7 +39,7 @@ def compared(
     ratios = pd.concat([_means(logs, keys, reference), _all(together, keys, reference)])
     merged = table.drop(columns=LISTS).merge(ratios, "outer", list(keys), suffixes=("", "_all"))
     merged["failure"] = merged["failure"].combine_first(merged["failure_all"])
-    first = [*keys, f"over_{reference}", "compared_joints"]
+    first = [*keys, *_ratios(reference), "compared_joints"]
     return merged[
         [*first, *[name for name in table if name not in (*keys, LISTS, "failure")], "failure"]
     ]
@@ -63,9 +64,14 @@ def _logs(table: pd.DataFrame, keys: list[str], reference: str) -> pd.DataFrame:
 
 def _means(logs: pd.DataFrame, keys: Sequence[str], reference: str) -> pd.DataFrame:
     groups = logs.groupby(list(keys), as_index=False)
-    means = groups.agg(mean=("log", "mean"), compared_joints=("log", "size"))
+    means = groups.agg(mean=("log", "mean"), most=("log", "max"), compared_joints=("log", "size"))
     means[f"over_{reference}"] = np.exp(means.pop("mean"))
+    means[f"most_over_{reference}"] = np.exp(means.pop("most"))
     return means.astype({"compared_joints": "Int64"})
+
+
+def _ratios(reference: str) -> list[str]:
+    return [f"over_{reference}", f"most_over_{reference}"]
 
 
 def _all(logs: pd.DataFrame, keys: Sequence[str], reference: str) -> pd.DataFrame:
@@ -75,6 +81,6 @@ def _all(logs: pd.DataFrame, keys: Sequence[str], reference: str) -> pd.DataFram
     case = [key for key in keys if key != "scheme"]
     of = clips.groupby(case)["clips"].transform("max")
     few = clips["clips"] < of
-    means.loc[few, f"over_{reference}"] = np.nan
+    means.loc[few, _ratios(reference)] = np.nan
     told = "on " + clips["clips"].astype(str) + " of " + of.astype(str) + " clips only"
     return means.assign(failure=told.where(few, None))
