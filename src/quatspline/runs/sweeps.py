@@ -241,6 +241,7 @@ def _sources(*environment: tuple[str, str]) -> str:
 
 def _environment() -> dict[str, str]:
     """The folders of schemes, experiments and clips, for a process that started elsewhere."""
-    names = (catalogue.FOLDERS, experiment.FOLDERS, clips.FOLDER)
+    names = (catalogue.FOLDERS, experiment.FOLDERS)
     folders = {name: os.environ.get(name, "").split(os.pathsep) for name in names}
+    folders[clips.FOLDER] = [os.environ.get(clips.FOLDER, "")]  # one, whatever is in its name
     return {k: os.pathsep.join(os.path.abspath(p) for p in v if p) for k, v in folders.items()}
