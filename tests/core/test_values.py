@@ -101,7 +101,7 @@ def test_operators_are_those_of_mathematics() -> None:
     np.testing.assert_allclose(values.cross(a, b), np.cross(a, b), **close)
     assert p @ q == pytest.approx(np.dot(p, q), abs=1e-14)
     np.testing.assert_allclose(dense(m * n), dense(m) @ dense(n), **close)
-    np.testing.assert_allclose(m @ a, dense(m) @ a, **close)
+    np.testing.assert_allclose(m @ a, dense(m) @ np.array(a), **close)
     np.testing.assert_allclose(dense(values.transposed(m)), dense(m).T, **close)
     for x, y in ((p, q), (a, b), (m, n)):
         np.testing.assert_allclose(x + y, np.array(x) + np.array(y), **close)
@@ -184,6 +184,6 @@ def test_symmetric_systems() -> None:
     m, v = mat(rng), vec(rng)
     square = values.transposed(m) * m
     x, definite = values.solve_symmetric(square, v)
-    np.testing.assert_allclose(x, np.linalg.solve(dense(square), v), rtol=1e-10)
+    np.testing.assert_allclose(x, np.linalg.solve(dense(square), np.array(v)), rtol=1e-10)
     assert definite
     assert not values.solve_symmetric(-square, v)[1]

@@ -30,6 +30,7 @@ from quatspline.kernels.jit import (
     on_stack,
     splat,
 )
+from quatspline.kernels.values import put_quat, put_vec, quat_at, vec_at
 
 BATCH = 1024
 """Samples located at once, before their tracks are evaluated: within the first-level cache."""
@@ -289,33 +290,22 @@ def _gather(sheet, knots, segments, where, first, n):
 @inlined
 def _store(sheet, order, out, first, n, tracks):
     """The result rows, component first, into out, sample first."""
-    if order == 0 and tracks == 1:  # a constant stride: the stores vectorise
-        _store_quaternions(sheet, out, first, 4, n)
+    if order == 0 and tracks == 1:  # a constant stride, and no value between: the stores vectorise
+        for j in range(n):
+            at = 4 * (first + j)
+            out[at] = sheet[RESULT, j]
+            out[at + 1] = sheet[RESULT + 1, j]
+            out[at + 2] = sheet[RESULT + 2, j]
+            out[at + 3] = sheet[RESULT + 3, j]
     elif order == 0:
-        _store_quaternions(sheet, out, first, 4 * tracks, n)
+        for j in range(n):
+            put_quat(out, 4 * tracks * (first + j), quat_at(sheet[RESULT:, j], 0))
     elif tracks == 1:
-        _store_rates(sheet, out, first, 3, n)
+        for j in range(n):
+            put_vec(out, 3 * (first + j), vec_at(sheet[RESULT:, j], 0))
     else:
-        _store_rates(sheet, out, first, 3 * tracks, n)
-
-
-@inlined
-def _store_quaternions(sheet, out, first, stride, n):
-    for j in range(n):
-        at = stride * (first + j)
-        out[at] = sheet[RESULT, j]
-        out[at + 1] = sheet[RESULT + 1, j]
-        out[at + 2] = sheet[RESULT + 2, j]
-        out[at + 3] = sheet[RESULT + 3, j]
-
-
-@inlined
-def _store_rates(sheet, out, first, stride, n):
-    for j in range(n):
-        at = stride * (first + j)
-        out[at] = sheet[RESULT, j]
-        out[at + 1] = sheet[RESULT + 1, j]
-        out[at + 2] = sheet[RESULT + 2, j]
+        for j in range(n):
+            put_vec(out, 3 * tracks * (first + j), vec_at(sheet[RESULT:, j], 0))
 
 
 @compiled

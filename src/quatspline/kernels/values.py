@@ -43,8 +43,6 @@ class Quat(NamedTuple):
     y: float
     z: float
 
-    __array_ufunc__ = None  # a number of numpy times a value asks the value
-
     def __mul__(self, q):
         return Quat(
             self.w * q.w - self.x * q.x - self.y * q.y - self.z * q.z,
@@ -79,8 +77,6 @@ class Vec(NamedTuple):
     y: float
     z: float
 
-    __array_ufunc__ = None
-
     def __rmul__(self, f):
         return Vec(f * self.x, f * self.y, f * self.z)
 
@@ -104,8 +100,6 @@ class Mat(NamedTuple):
     b: Vec
     c: Vec
 
-    __array_ufunc__ = None
-
     def __mul__(self, m):
         return Mat(self @ m.a, self @ m.b, self @ m.c)
 
@@ -125,7 +119,10 @@ class Mat(NamedTuple):
         return Mat(-self.a, -self.b, -self.c)
 
 
-SYMBOLS = {
+for _cls in (Quat, Vec, Mat):
+    _cls.__array_ufunc__ = None  # type: ignore[union-attr]  # numpy's numbers, too, ask a for f * a
+
+SYMBOLS: dict[Any, str] = {
     operator.mul: "__mul__",
     operator.add: "__add__",
     operator.sub: "__sub__",
@@ -138,7 +135,7 @@ _timed = {cls: inlined(cls.__rmul__) for cls in (Quat, Vec, Mat)}
 
 def _class(kind: Any) -> Any:
     """The class of a value, of the type that numba has for it; None for other types."""
-    cls = kind.instance_class if isinstance(kind, types.BaseNamedTuple) else None
+    cls = getattr(kind, "instance_class", None)
     return cls if cls in _timed else None
 
 
@@ -154,8 +151,9 @@ def _teach(symbol: Callable[..., Any], name: str) -> None:
             return lambda a, b: times(b, a)
         return unary(a)
 
-    chosen = unary if symbol in (operator.neg, operator.invert) else binary
-    overload(symbol, jit_options={"forceinline": True, **SETTINGS}, strict=False)(chosen)
+    chosen: Any = unary if symbol in (operator.neg, operator.invert) else binary
+    options: Any = {"forceinline": True, **SETTINGS}
+    overload(symbol, jit_options=options, strict=False)(chosen)
 
 
 for _symbol, _name in SYMBOLS.items():
