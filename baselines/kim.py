@@ -34,10 +34,9 @@ from quatspline.fitting.bspline_newton import copy, descend, moved, newton, sett
 from quatspline.inputs.arrays import at, real_array, refuse_infinite
 from quatspline.kernels.jit import CHANGE, ITERATIONS, REACH, RESIDUAL, compiled, fit_kernel
 from quatspline.kernels.operations import Operations, Per
+from quatspline.kernels.quick import exp, log
 from quatspline.kernels.values import (
-    exp,
     keyframe,
-    log,
     put_quat_column,
     put_vec_column,
     quat_at,

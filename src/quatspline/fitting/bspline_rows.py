@@ -18,11 +18,11 @@ from quatspline.fitting.block_tridiagonal import backward, forward
 from quatspline.fitting.bspline import set_phantoms
 from quatspline.kernels.jacobians import coefficients, spun
 from quatspline.kernels.jit import compiled, inlined
-from quatspline.kernels.scalars import series, sinc
+from quatspline.kernels.quick import log
+from quatspline.kernels.scalars import FITTED, series, sinc
 from quatspline.kernels.values import (
     Mat,
     Vec,
-    log,
     polar_exp,
     put_quat_column,
     put_vec,
@@ -30,9 +30,6 @@ from quatspline.kernels.values import (
     vec_at,
     vec_column,
 )
-
-FAR = 3.2
-"""Squared half angle from which `series` no longer serves."""
 
 BEFORE, AFTER, WHOLE = 0, 3, 6
 """Rows of the jets (s, c, b) of m_k w_k, p_k w_{k+1} and w_{k+1}."""
@@ -43,7 +40,7 @@ LOWER, OWN, UPPER, COLUMNS = 0, 9, 18, 64
 
 @inlined
 def put_jet(jets, first, k, z):
-    """s, c and b of `jacobians` for |v|^2 = z below FAR."""
+    """s, c and b of `jacobians` for |v|^2 = z below FITTED."""
     s, c = series(z)
     jets[first, k], jets[first + 1, k] = 1.0 + z * s, 1.0 + z * c
     jets[first + 2, k] = -(s + c + z * s * c)
@@ -76,7 +73,7 @@ def set_jets(m, p, w, jets):
     for k in range(n):
         put_jet(jets, WHOLE, k, size[k + 1])
     for j in range(n + 1):
-        if not size[j] < FAR:
+        if not size[j] < FITTED:
             put_far_jets(jets, m, p, j, size[j])
 
 

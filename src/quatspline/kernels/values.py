@@ -27,10 +27,7 @@ from numba.core import types
 from numba.extending import overload
 
 from quatspline.kernels.jit import SETTINGS, inlined
-from quatspline.kernels.scalars import ANTIPODAL_SINE, NEAR, TINY, arctan, sinc, sinc_near, sincos
-
-SHORT = 1e-3
-"""Squares up to which five terms of the arc tangent are exact to rounding."""
+from quatspline.kernels.scalars import ANTIPODAL_SINE, TINY, arctan, sinc, sincos
 
 # The formulas of operators are methods; `_teach` tells compiled code of them.
 
@@ -121,6 +118,8 @@ class Mat(NamedTuple):
 
 for _cls in (Quat, Vec, Mat):
     _cls.__array_ufunc__ = None  # type: ignore[union-attr]  # numpy's numbers, too, ask a for f * a
+
+Vec.__mul__ = None  # type: ignore[assignment]  # a tuple times 2 is one twice as long
 
 SYMBOLS: dict[Any, str] = {
     operator.mul: "__mul__",
@@ -266,11 +265,7 @@ def unit(a):
 @inlined
 def exp(v):
     """The unit quaternion exp(v)."""
-    z = v @ v
-    if z < NEAR * NEAR:
-        s, c = sinc_near(z)
-    else:
-        s, c = sinc(z)
+    s, c = sinc(v @ v)
     return polar_exp(s, c, v)
 
 
@@ -283,14 +278,11 @@ def polar_exp(s, c, n):
 @inlined
 def log(q):
     """The principal logarithm, |log| <= pi; of -1, which has none, pi about the first axis."""
-    n = vec(q) @ vec(q)
-    if q.w > 0.0 and n < SHORT * q.w * q.w:
-        k = 1.0 / q.w
-        t = n * k * k
-        return (k - k * t * (1 / 3 - t * (1 / 5 - t * (1 / 7 - t * (1 / 9 - t / 11))))) * vec(q)
-    length = math.sqrt(n)
+    length = norm(vec(q))
     if length < TINY:
-        return Vec(math.pi, 0.0, 0.0)
+        if q.w < 0.0:
+            return Vec(math.pi, 0.0, 0.0)
+        return Vec(q.x / q.w, q.y / q.w, q.z / q.w)
     return (math.atan2(length, q.w) / length) * vec(q)
 
 
