@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from quatspline.catalogue import schemes, version
-from quatspline.timing.interleaved import OverBudget
+from quatspline.timing.budget import OverBudget
 from quatspline.timing.speed import FLOORS, Task, contender_of, tasks
 
 SEED = 0

@@ -1,6 +1,5 @@
 """Accuracy against keyframe spacing on a smooth motion, and the orders that it falls with."""
 
-import time
 from functools import partial
 from typing import Any
 
@@ -9,12 +8,12 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from quatspline.catalogue import found
-from quatspline.catalogue import scheme as scheme_class
 from quatspline.figures import style
 from quatspline.instruments.accuracy import TARGETS, errors, knots, with_reach, with_slopes
 from quatspline.instruments.trials import Row, attempted, builder, facts
 from quatspline.quaternion import FloatArray
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
+from quatspline.timing.budget import Budget, calls
 from quatspline.trajectories.smooth import SPAN, tumble
 
 TITLE = "Accuracy on a smooth motion"
@@ -36,10 +35,10 @@ QUICK, FULL = (21, 41, 81), (11, 21, 41, 81, 161, 321, 641)
 """Keyframes of the levels; quick runs measure all for our own schemes at uniform times, which orders are read from."""
 KINDS = ("uniform", "jittered", "log-uniform")
 
-BUDGET = 30.0
-"""Seconds of computing that a level may be expected to take ..."""
-GROWTH = 4.0
-"""... when twice the keyframes take this much longer (a set-up that grows with their square)."""
+BUDGET = Budget(limit=1e8, meter=calls)
+"""Of a level of a library's scheme, about half a minute."""
+SAMPLED = (40, 4, 4)
+"""Samples of a segment, for its forecast: with the nine orientations of each rate that a scheme does not offer."""
 
 
 def cells(run: Run) -> list[dict[str, Any]]:
@@ -49,18 +48,23 @@ def cells(run: Run) -> list[dict[str, Any]]:
 
 
 def measure_cell(run: Run, knots: str, scheme: str) -> list[Row]:
-    rows = []
-    seconds = 0.0
-    for level, count in enumerate(levels(run, knots, scheme)):
+    rows, counts = [], levels(run, knots, scheme)
+    refusals = _refusals(scheme, counts)
+    for count in counts:
         base = {"knots": knots, "scheme": scheme, "keyframes": count, "spacing": SPAN / (count - 1)}
-        if GROWTH * seconds > BUDGET:
-            rows.append(base | {"failure": f"over budget beyond {(count + 1) // 2} keyframes"})
-            continue
-        began = time.process_time()  # of this process alone: others may share the core
-        rows += [base | row for row in attempted(partial(_measured, run, knots, scheme, count))]
-        # The first level may load and compile.
-        seconds = time.process_time() - began if level else 0.0
+        measure = partial(_measured, run, knots, scheme, count)
+        failure = refusals.get(count)
+        rows += [base | row for row in ([{"failure": failure}] if failure else attempted(measure))]
     return rows
+
+
+def _refusals(name: str, counts: tuple[int, ...]) -> dict[int, str]:
+    """Why levels are not measured; none where the finest is, which costs most."""
+    cls = found()[name].scheme
+    if cls is None or BUDGET.refusal(cls, counts[-1], SAMPLED) is None:
+        return {}
+    reasons = {count: BUDGET.refusal(cls, count, SAMPLED) for count in counts}
+    return {count: reason for count, reason in reasons.items() if reason}
 
 
 def levels(run: Run, knots: str, scheme: str) -> tuple[int, ...]:
@@ -70,8 +74,6 @@ def levels(run: Run, knots: str, scheme: str) -> tuple[int, ...]:
 
 
 def _measured(run: Run, kind: str, name: str, count: int) -> list[Row]:
-    if failure := scheme_class(name).impractical(count):
-        return [{"failure": failure}]
     times: FloatArray = knots(run.rng("accuracy", kind, count), kind, count)
     curve = builder(name)(times, tumble(times))
     return [{**errors(curve), **facts(curve)}]

@@ -10,11 +10,11 @@ from matplotlib.figure import Figure
 from quatspline.catalogue import found, version
 from quatspline.claims.claim import DEPARTS, UNDECIDED
 from quatspline.figures import style
-from quatspline.findings import choosing
+from quatspline.findings import decisions
 from quatspline.findings.quotes import Reader
-from quatspline.kernels.operations import UNSTATED
+from quatspline.kernels.operations import UNSTATED, Per
 from quatspline.quaternion import FloatArray
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import FULL, QUICK, Run
 from quatspline.timing.operations import of_a_keyframe, of_a_sample
 from quatspline.trajectories.sets import COUNT
 
@@ -64,15 +64,12 @@ timings are short, as in tables of quick size."""
 ASKED = {"interpolates": "passes_keys", "takes uneven times": "uneven_times", "closes": "closes"}
 """Claims whose measured answers are columns."""
 EASY, SMOOTH = "60 degrees", "smooth"
-SIZES = {"evaluation": 10_000, "set-up": 1000}
 COSTS = {
-    "evaluation": ("nanoseconds_per_sample", "operations_sample", "times_fastest_sample", 1e9),
-    "set-up": ("microseconds_per_keyframe", "operations_keyframe", "times_fastest_keyframe", 1e6),
+    "evaluation": (10_000, 1e9, of_a_sample, "nanoseconds_per_{}", "sample"),
+    "set-up": (1000, 1e6, of_a_keyframe, "microseconds_per_{}", "keyframe"),
 }
-"""Columns of a task, and units a second."""
-UNITS = {"evaluation": "sample", "set-up": "keyframe"}
-COUNTED = {"exps": 1.0, "logs": 1.0, "slerps": 2.0}
-"""Operations with their weights: a slerp is a logarithm and an exponential."""
+"""The largest size of a task, units a second, which operations are its, and columns."""
+COUNTED = {"exps": 1.0, "logs": 1.0, "slerps": 2.0}  # a slerp is one of each
 LEAST_EXCESS = 1e-4
 """Excess of torque below this is drawn there."""
 GAP, ROOM = 0.034, 3.0
@@ -97,12 +94,12 @@ def derive(run: Run, read: Reader) -> pd.DataFrame:
     table["leaps"] = pd.Series([next(_texts(pair), None) for pair in leaps], dtype=object)
     causes = zip(*(table[name] for name in FAILURES), strict=True)
     table["worst_failure"] = ["; ".join(_texts(row)) or None for row in causes]
-    table["run_size"] = "quick" if table[list(SMALL)].eq(True).to_numpy().any() else "full"
+    table["run_size"] = QUICK if table[list(SMALL)].eq(True).to_numpy().any() else FULL
     table["version"] = table["scheme"].map(version)
     table["missing"] = ", ".join(missing) or None
     through = table[table["passes_keys"].ne("no")]
-    table["pareto"] = choosing.pareto(through, choosing.COUNTED)
-    table["times_pareto"] = choosing.pareto(through, choosing.TIMED)
+    table["pareto"] = decisions.pareto(through, decisions.COUNTED)
+    table["times_pareto"] = decisions.pareto(through, decisions.TIMED)
     return table[COLUMNS].astype(dict.fromkeys(WHOLE, "Int64"))
 
 
@@ -112,7 +109,7 @@ def _texts(values: Iterable[Any]) -> Iterator[str]:
 
 
 def text(table: pd.DataFrame) -> str:
-    return "## Decisions\n\n" + "\n".join(choosing.lines(table))
+    return "## Decisions\n\n" + "\n".join(decisions.lines(table))
 
 
 # -- what each table says -----------------------------------------------------------------------
@@ -210,25 +207,25 @@ def _fairness(table: pd.DataFrame) -> pd.DataFrame:
 
 def _cost(table: pd.DataFrame) -> pd.DataFrame:
     parts = []
-    for task, (seconds, operations, fastest, unit) in COSTS.items():
-        rows = table[(table["task"] == task) & (table["size"] <= SIZES[task])]
+    for task, (size, unit, each_takes, seconds, item) in COSTS.items():
+        rows = table[(table["task"] == task) & (table["size"] <= size)]
         rows = rows[rows["seconds_median"].notna()].sort_values("size").groupby("scheme").last()
         each = rows["seconds_median"] / rows["size"] * unit
         counts = rows[list(COUNTED)].mul(pd.Series(COUNTED)).sum(axis=1, skipna=False)
-        told = [_all_counted(str(name), UNITS[task]) for name in rows.index]
-        part = {seconds: each, operations: counts.where(np.array(told, dtype=bool))}
-        parts.append(pd.DataFrame({**part, fastest: each / each.min()}))
-    short = "run_size" in table and bool(table["run_size"].eq("quick").any())
+        told = [_all_counted(str(name), each_takes) for name in rows.index]
+        part = {seconds.format(item): each, f"times_fastest_{item}": each / each.min()}
+        counted = counts.where(np.array(told, dtype=bool))
+        parts.append(pd.DataFrame({**part, f"operations_{item}": counted}))
+    short = "run_size" in table and bool(table["run_size"].eq(QUICK).any())
     return pd.concat(parts, axis=1).assign(short_rounds=short)
 
 
-def _all_counted(name: str, unit: str) -> bool:
-    """Whether a scheme states what a unit takes, and in nothing but the operations added here."""
+def _all_counted(name: str, each: Callable[[Per], float]) -> bool:
+    """Whether a scheme states what each of some unit takes, and in nothing but the operations added here."""
     item = found().get(name)
     if item is None or item.scheme is None:
         return False
     own = item.scheme.operations
-    each = of_a_keyframe if unit == "keyframe" else of_a_sample
     parts = (own, own.iteration or UNSTATED)
     kinds = {kind for part in parts for kind, per in part.kinds.items() if each(per)}
     return bool(kinds) and kinds <= set(COUNTED)

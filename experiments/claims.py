@@ -25,9 +25,9 @@ from quatspline.claims.claim import (
 from quatspline.claims.published import published, works
 from quatspline.curve import Curve
 from quatspline.figures import style
-from quatspline.figures.heat import ROW, label_cells
+from quatspline.figures.heat import ROW, label_cells, scheme_rows
 from quatspline.instruments.trials import Row
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 
 TITLE = "Claims and verdicts"
 PAPER = False
@@ -159,8 +159,10 @@ def _spins(cls: type[Curve]) -> list[tuple[Any, ...]]:
 
 
 def _regimes(run: Run, cls: type[Curve], in_part: bool) -> dict[str, list[Probe]]:
-    """Probes of continuity by step angle and kind of times, fewest keyframes first; in part, those of the
-    fewest that are cheap: libraries take most of the time."""
+    """Probes of continuity by step angle and kind of times, fewest keyframes first.
+
+    In part, those of the fewest that are cheap: libraries take most of the time.
+    """
     angles, (counts, seeds) = (60, 120, 170), ((4,), 1) if in_part else ((3, 4, 6), 3)
     takes = (False, True) if cls.non_uniform else (False,)
     return {
@@ -206,7 +208,7 @@ def _matrix(ax: Any, verdicts: pd.DataFrame, texts: pd.DataFrame) -> None:
         for name in heads
     ]
     ax.set_xticks(range(verdicts.shape[1]), heads, fontsize=6, rotation=90)
-    ax.set_yticks(range(len(verdicts)), list(verdicts.index))
+    scheme_rows(ax, list(verdicts.index))
     ax.tick_params(length=0, top=True, labeltop=True, bottom=False, labelbottom=False)
     ax.grid(visible=False)
 

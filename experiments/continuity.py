@@ -9,11 +9,11 @@ from matplotlib.figure import Figure
 
 from quatspline.catalogue import found
 from quatspline.figures import style
-from quatspline.figures.heat import ROW
+from quatspline.figures.heat import ROW, scheme_rows
 from quatspline.instruments.continuity import jumps, measured_continuity, speeds
 from quatspline.instruments.trials import Row, attempted, builder, facts, records
 from quatspline.quaternion import FloatArray
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run, crossed
 from quatspline.trajectories.smooth import SPAN, tumble
 from quatspline.trajectories.walks import walk
 
@@ -44,13 +44,8 @@ LOOKS = {"q": ("D", "#000000"), "omega": ("o", style.BLUE), "alpha": ("s", style
 
 
 def cells(run: Run) -> list[dict[str, Any]]:
-    names = run.schemes or list(found())
-    return [
-        {"case": case, "scheme": name}
-        for case in _cases(run)
-        for name in names
-        if not (run.quick and case.startswith(SMOOTH) and _peer(name))
-    ]
+    cells = crossed(case=_cases(run), scheme=run.names)
+    return [cell for cell in cells if not (run.quick and _is_slow(**cell))]
 
 
 def _cases(run: Run) -> list[str]:
@@ -59,14 +54,15 @@ def _cases(run: Run) -> list[str]:
     return walks + [f"{SMOOTH}, {count} keyframes" for count in COUNTS]
 
 
-def _peer(name: str) -> bool:
-    cls = found()[name].scheme
-    return cls is None or cls.peer is not None
+def _is_slow(case: str, scheme: str) -> bool:
+    """A library's curve through many keyframes."""
+    cls = found()[scheme].scheme
+    return case.startswith(SMOOTH) and (cls is None or cls.peer is not None)
 
 
 def measure_cell(run: Run, case: str, scheme: str) -> list[Row]:
-    base = {"case": case, "scheme": scheme}
-    return [base | row for row in attempted(partial(_measured, scheme, *keyframes_of(run, case)))]
+    measured = partial(_measured, scheme, *keyframes_of(run, case))
+    return attempted(measured, case=case, scheme=scheme)
 
 
 def keyframes_of(run: Run, case: str) -> tuple[FloatArray, FloatArray]:
@@ -106,8 +102,7 @@ def draw(table: pd.DataFrame) -> Figure:
     ax = panels[0, -1]
     ax.plot(speeds_at["least_key_speed"], speeds_at["scheme"].map(names.index), "k.", ms=5)
     ax.set(title="speed at keys", xlabel="least over mean", xlim=(-0.08, 1.08))
-    ax.set_yticks(range(len(names)), names)
-    ax.set_ylim(len(names) - 0.5, -0.5)
+    scheme_rows(ax, names)
     style.letters(panels[0])
     style.legend_of(fig, panels[0, 0], 5)
     return fig

@@ -21,7 +21,8 @@ from quatspline.instruments.convergence import (
 )
 from quatspline.instruments.trials import reason
 from quatspline.quaternion import FloatArray
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
+from quatspline.timing.budget import too_many
 from quatspline.trajectories.walks import walk
 
 TITLE = "Convergence of iterative schemes"
@@ -90,7 +91,7 @@ def measure_cell(
     cls = catalogue.scheme(scheme)
     row: dict[str, Any] = {"scheme": scheme, "method": method, "keyframes": keyframes}
     row |= {"step_degrees": step_degrees, "unevenness": unevenness, "failure": None}
-    if failure := cls.impractical(keyframes):
+    if failure := too_many(cls, keyframes):
         return row | {"sets": 0, "failure": failure}
     rng = run.rng("convergence", step_degrees, unevenness, keyframes)
     sets = _sets(run, keyframes)
@@ -182,7 +183,7 @@ def _jumps(
     """What acceleration jumps are left by the scheme's own stop, where C2 is claimed."""
     if cls.continuity < 2:
         return {}
-    few = run.quick or cls.practical_keyframes is not None
+    few = run.quick or (cls.iterative and cls.practical_keyframes is not None)
     sets = max(1, (JUMP_KEYFRAMES_QUICK if few else JUMP_KEYFRAMES) // len(q))
     curves = []
     for k in range(sets):

@@ -1,7 +1,7 @@
 """What every scheme costs: set-up and evaluation apart, against the size; latency; memory."""
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -11,8 +11,9 @@ from matplotlib.figure import Figure
 from quatspline import catalogue
 from quatspline.curve import Curve
 from quatspline.figures import style
-from quatspline.runs.running import Run
-from quatspline.timing.cost import Call, Task, costs, operations, peak_bytes
+from quatspline.runs.experiment import Run
+from quatspline.timing.budget import Budget, Call, seconds
+from quatspline.timing.cost import SPREAD, Task, costs, fitted_whole, operations, peak_bytes
 from quatspline.trajectories.smooth import tumble
 
 TITLE = "Cost of set-up and evaluation"
@@ -21,8 +22,6 @@ SERIAL = True
 KEYS = ["task", "size", "scheme"]
 BUDGET, BUDGET_QUICK = 5.0, 0.1
 KEYFRAMES = 100
-SPREAD = 1000
-"""Segments between samples in set-up: fewer than are fitted at once, so that every segment is fitted."""
 NOTE = (
     "Public calls, validation included, one thread, on a smooth motion, times 0, 1, 2, ... . set-up: the curve "
     f"through size keyframes and, beyond {SPREAD}, a sample every {SPREAD} segments, so that all of a long curve is "
@@ -59,7 +58,7 @@ def cells(run: Run) -> list[dict[str, Any]]:
 def measure_cell(run: Run, task: str, size: int) -> list[dict[str, Any]]:
     names = run.schemes or catalogue.schemes()
     tasks = {name: TASKS[task](catalogue.scheme(name)) for name in names}
-    budget = BUDGET_QUICK if run.quick else BUDGET
+    budget = Budget(BUDGET_QUICK if run.quick else BUDGET, seconds)
     effort: dict[str, Any] = {"rounds": 7, "duration": 1e-2}
     if run.quick:
         effort = {"rounds": 3, "duration": 2e-3}
@@ -71,8 +70,8 @@ def measure_cell(run: Run, task: str, size: int) -> list[dict[str, Any]]:
         row["run_size"] = run.size
         row |= {"failure": cost.failure, **_counts(task, name)}
         row |= {"seconds_median": cost.seconds, "seconds_iqr": cost.iqr}
-        if not run.quick and size == MEMORY[task] and cost.seconds < MEMORY_SHARE * budget:
-            row["times_memory"] = peak_bytes(tasks[name](size)) / (BYTES * size)
+        if not run.quick and size == MEMORY[task] and cost.seconds < MEMORY_SHARE * budget.limit:
+            row["times_memory"] = peak_bytes(tasks[name].prepare(size)) / (BYTES * size)
         rows.append(row)
     return rows
 
@@ -86,18 +85,11 @@ def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
 
 
 def _setup(cls: type[Curve]) -> Task:
-    """The constructor and, where there are many keyframes, samples spread over all of them: a long curve
-    of a local scheme is fitted only where it is called, and its constructor alone times nothing."""
-
     def prepare(count: int) -> Call:
         t = np.arange(float(count))
-        q = tumble(t)
-        if count <= SPREAD:
-            return lambda: cls(t, q)
-        at = np.linspace(t[0], t[-1], 1 + -(-count // SPREAD))
-        return lambda: cls(t, q)(at)
+        return fitted_whole(partial(cls, t, tumble(t)), t)
 
-    return prepare
+    return Task(prepare, linear=cls.support is not None)
 
 
 def _evaluation(cls: type[Curve]) -> Task:
@@ -107,7 +99,7 @@ def _evaluation(cls: type[Curve]) -> Task:
         evaluate, at = curve(), np.linspace(0.0, KEYFRAMES - 1.0, samples)
         return lambda: evaluate(at)
 
-    return prepare
+    return Task(prepare)
 
 
 def _latency(cls: type[Curve]) -> Task:
@@ -115,7 +107,7 @@ def _latency(cls: type[Curve]) -> Task:
         curve = _curve(cls, count)
         return lambda: curve(BETWEEN)
 
-    return prepare
+    return Task(prepare, linear=cls.support is not None)
 
 
 TASKS: dict[str, Callable[[type[Curve]], Task]] = {

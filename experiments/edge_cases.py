@@ -9,10 +9,10 @@ from matplotlib.figure import Figure
 
 from quatspline.catalogue import found, version
 from quatspline.figures import style
-from quatspline.figures.heat import ROW, label_cells
+from quatspline.figures.heat import ROW, label_cells, scheme_rows
 from quatspline.instruments.edge_cases import edge_result
 from quatspline.instruments.trials import TIGHT, Row
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run, crossed
 from quatspline.trajectories.edge_cases import edge_cases
 
 TITLE = "Edge cases"
@@ -38,7 +38,7 @@ RESULTS = {
 
 
 def cells(run: Run) -> list[dict[str, Any]]:
-    return [{"scheme": name} for name in run.schemes or found()]
+    return crossed(scheme=run.names)
 
 
 def measure_cell(run: Run, scheme: str) -> list[Row]:
@@ -76,7 +76,7 @@ def draw(table: pd.DataFrame) -> Figure:
     ax.set_xticks(
         range(results.shape[1]), [_two_lines(str(name)) for name in results], fontsize=6.5
     )
-    ax.set_yticks(range(len(results)), list(results.index))
+    scheme_rows(ax, list(results.index))
     ax.tick_params(length=0, top=True, labeltop=True, bottom=False, labelbottom=False)
     ax.grid(visible=False)
     return fig

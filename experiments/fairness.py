@@ -7,14 +7,14 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from quatspline.catalogue import found, version
+from quatspline.catalogue import version
 from quatspline.figures import style
-from quatspline.figures.heat import ROW, log_heat
+from quatspline.figures.heat import ROW, log_heat, scheme_rows
 from quatspline.instruments.continuity import jumps, measured_continuity
 from quatspline.instruments.fairness import fairness
 from quatspline.instruments.trials import Row, attempted, builder
 from quatspline.quaternion import FloatArray
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 from quatspline.trajectories.sets import COUNT, step_sets, torque_sets
 
 TITLE = "Fairness: torque energy over the minimum"
@@ -46,7 +46,7 @@ LIMITS = (1e-5, 10.0)
 
 
 def cells(run: Run) -> list[dict[str, Any]]:
-    names = [REFERENCE, *(n for n in (run.schemes or found()) if n != REFERENCE)]
+    names = dict.fromkeys([REFERENCE, *run.names])
     angles = (10, 90, 170) if run.quick else range(10, 171, 20)
     data = [COMMITTED, *(f"{degrees} degrees" for degrees in angles)]
     return [{"scheme": name, "data": where} for where in data for name in names]
@@ -61,8 +61,8 @@ def _sets(run: Run, data: str) -> list[tuple[FloatArray, FloatArray]]:
 def measure_cell(run: Run, scheme: str, data: str) -> list[Row]:
     rows = []
     for index, (times, keyframes) in enumerate(_sets(run, data)):
-        measured = attempted(partial(measures, scheme, times, keyframes))
-        rows += [{"scheme": scheme, "data": data, "set": index, **row} for row in measured]
+        measured = partial(measures, scheme, times, keyframes)
+        rows += attempted(measured, scheme=scheme, data=data, set=index)
     return rows
 
 
@@ -150,9 +150,8 @@ def _excess(ax: Any, rows: pd.DataFrame, names: list[str]) -> None:
     for x, height, name in zip(excess["median"], y, names, strict=True):
         looks = style.scheme_style(name)
         ax.plot(x, height, color=looks["color"], marker=looks["marker"], ms=4.5)
-    ax.set_yticks(y, names)
     ax.set(xscale="log", xlabel="excess of torque energy", title="committed sets")
-    ax.set_ylim(len(names) - 0.5, -0.5)
+    scheme_rows(ax, names)
 
 
 def caption(table: pd.DataFrame) -> str:

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from quatspline.catalogue import scheme
 from quatspline.figures.blending import draw_blending
 from quatspline.instruments.blending import blending
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 
 TITLE = "Figure 1: blending functions of the quartic"
 PAPER = True

@@ -4,7 +4,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from quatspline.figures.motions import caption_of, four_panels, motion_table
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 from quatspline.trajectories.paper import KEY, RECONSTRUCTED
 
 TITLE = "Figure 3: the key"

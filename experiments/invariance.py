@@ -7,14 +7,13 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from quatspline.catalogue import found
 from quatspline.catalogue import scheme as scheme_class
 from quatspline.figures import style
 from quatspline.figures.heat import ROW, log_heat
 from quatspline.instruments.invariance import INVARIANT, PROPERTIES, invariance
 from quatspline.instruments.trials import Row, attempted, builder, facts
 from quatspline.quaternion import FloatArray
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run, crossed
 from quatspline.trajectories.walks import walk
 
 TITLE = "Invariance"
@@ -34,14 +33,12 @@ GRID = 1024.0
 
 
 def cells(run: Run) -> list[dict[str, Any]]:
-    names = run.schemes or list(found())
-    angles = (60,) if run.quick else (20, 60, 120, 170)
-    return [{"scheme": name, "degrees": degrees} for name in names for degrees in angles]
+    return crossed(scheme=run.names, degrees=(60,) if run.quick else (20, 60, 120, 170))
 
 
 def measure_cell(run: Run, scheme: str, degrees: int) -> list[Row]:
-    base = {"step_degrees": degrees, "scheme": scheme}
-    return [base | row for row in attempted(partial(_measured, run, scheme, degrees))]
+    measured = partial(_measured, run, scheme, degrees)
+    return attempted(measured, step_degrees=degrees, scheme=scheme)
 
 
 def _measured(run: Run, name: str, degrees: int) -> list[Row]:

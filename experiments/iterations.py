@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from quatspline.catalogue import scheme
 from quatspline.figures import style
 from quatspline.quaternion import FloatArray
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 from quatspline.trajectories.paper import CASES, RECONSTRUCTED, SOLVE, PaperCase, steps
 from quatspline.trajectories.walks import loop, walk
 

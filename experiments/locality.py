@@ -7,13 +7,12 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from quatspline.catalogue import found
 from quatspline.catalogue import scheme as scheme_class
 from quatspline.figures import style
-from quatspline.figures.heat import ROW, log_heat
+from quatspline.figures.heat import ROW, log_heat, scheme_rows
 from quatspline.instruments.locality import locality, responses
 from quatspline.instruments.trials import Row, attempted, builder, facts, records
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run, crossed
 from quatspline.trajectories.walks import walk
 
 TITLE = "Locality"
@@ -35,14 +34,12 @@ SHOWN = 8
 
 
 def cells(run: Run) -> list[dict[str, Any]]:
-    names = run.schemes or list(found())
-    angles = (60,) if run.quick else (10, 60, 120)
-    return [{"scheme": name, "degrees": degrees} for name in names for degrees in angles]
+    return crossed(scheme=run.names, degrees=(60,) if run.quick else (10, 60, 120))
 
 
 def measure_cell(run: Run, scheme: str, degrees: int) -> list[Row]:
-    base = {"step_degrees": degrees, "scheme": scheme}
-    return [base | row for row in attempted(partial(_measured, run, scheme, degrees))]
+    measured = partial(_measured, run, scheme, degrees)
+    return attempted(measured, step_degrees=degrees, scheme=scheme)
 
 
 def _measured(run: Run, name: str, degrees: int) -> list[Row]:
@@ -77,8 +74,8 @@ def draw(table: pd.DataFrame) -> Figure:
     panels[0, 0].set(title="reach", xlabel="segment, from the keyframe")
     ax = panels[0, 1]
     ax.plot(reach["amplification"], range(len(names)), "k.", ms=5)
-    ax.set(title="amplification", xlabel="largest movement", ylim=(len(names) - 0.5, -0.5))
-    ax.set_yticks(range(len(names)), [])
+    ax.set(title="amplification", xlabel="largest movement")
+    scheme_rows(ax, names, shown=False)
     style.letters(panels[0])
     return fig
 

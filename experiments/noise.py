@@ -7,12 +7,11 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from quatspline.catalogue import found
 from quatspline.figures import style
-from quatspline.figures.heat import ROW
+from quatspline.figures.heat import ROW, scheme_rows
 from quatspline.instruments.noise import noise
 from quatspline.instruments.trials import Row, attempted, builder, facts
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run, crossed
 from quatspline.trajectories.walks import walk
 
 TITLE = "Response to noise"
@@ -32,18 +31,15 @@ LOOKS = {"keyframes": ("o", style.BLUE), "times": ("s", style.RED)}
 
 
 def cells(run: Run) -> list[dict[str, Any]]:
-    names = run.schemes or list(found())
-    angles = (60,) if run.quick else (10, 60, 120)
-    return [{"scheme": name, "degrees": degrees} for name in names for degrees in angles]
+    return crossed(scheme=run.names, degrees=(60,) if run.quick else (10, 60, 120))
 
 
 def measure_cell(run: Run, scheme: str, degrees: int) -> list[Row]:
-    base = {"step_degrees": degrees, "scheme": scheme}
-    return [
-        base | {"error": kind} | row
-        for kind in LOOKS
-        for row in attempted(partial(_measured, run, scheme, degrees, kind))
-    ]
+    rows = []
+    for kind in LOOKS:
+        measured = partial(_measured, run, scheme, degrees, kind)
+        rows += attempted(measured, step_degrees=degrees, scheme=scheme, error=kind)
+    return rows
 
 
 def _measured(run: Run, name: str, degrees: int, kind: str) -> list[Row]:
@@ -67,8 +63,7 @@ def draw(table: pd.DataFrame) -> Figure:
             ax.plot(rows[column], y, marker, c=color, mfc="none", label=f"errors of {error}")
         ax.set(title=title, xlabel="gain")
     panels[0, 2].set_xscale("symlog", linthresh=0.1)
-    panels[0, 0].set_yticks(range(len(names)), names)
-    panels[0, 0].set_ylim(len(names) - 0.5, -0.5)
+    scheme_rows(panels[0, 0], names)
     style.letters(panels[0])
     style.legend_of(fig, panels[0, 0], 2)
     return fig

@@ -9,12 +9,12 @@ import pandas as pd
 from quatspline.catalogue import scheme
 from quatspline.curve import Curve
 from quatspline.instruments.trials import reason
-from quatspline.options import declared_by
-from quatspline.runs.running import Run
+from quatspline.options import among
+from quatspline.runs.experiment import Run
 from quatspline.timing.interleaved import Contender, interleaved
 from quatspline.timing.operations import OPERATIONS, executed, iterations
 from quatspline.timing.protocols import PROTOCOLS, Protocol, frames
-from quatspline.trajectories.paper import CASES, RECONSTRUCTED, SOLVE, PaperCase, Row
+from quatspline.trajectories.paper import CASES, RECONSTRUCTED, SOLVE, PaperCase, PaperRow
 
 TITLE = "Table 1: iterations and seconds"
 PAPER = True
@@ -57,12 +57,11 @@ def measure(run: Run) -> pd.DataFrame:
 
 def _options(name: str) -> dict[str, Any]:
     """The paper's tolerance and stop rule, as far as the scheme has them."""
-    known = declared_by(scheme(name))
-    return {option: value for option, value in SOLVE.items() if option in known}
+    return among(scheme(name), SOLVE)
 
 
 def group(
-    run: Run, case: PaperCase, row: Row, protocol: Protocol, schemes: tuple[str, ...]
+    run: Run, case: PaperCase, row: PaperRow, protocol: Protocol, schemes: tuple[str, ...]
 ) -> pd.DataFrame:
     """One case and protocol: all schemes timed against one another."""
     t = case.frames(row.frames)
@@ -89,7 +88,7 @@ def _rendering(case: PaperCase, t: Any, generate: Callable[[int], Any]) -> Calla
     return contender
 
 
-def _public(run: Run, case: PaperCase, row: Row, schemes: tuple[str, ...]) -> pd.DataFrame:
+def _public(run: Run, case: PaperCase, row: PaperRow, schemes: tuple[str, ...]) -> pd.DataFrame:
     """The public call, validation included: build and evaluate all frames."""
     times, quaternions, t = case.times, case.quaternions, case.frames(row.frames)
 
@@ -112,7 +111,7 @@ def _timed(
     run: Run,
     label: str,
     case: PaperCase,
-    row: Row,
+    row: PaperRow,
     protocol: Protocol,
     contenders: Mapping[str, Contender],
 ) -> pd.DataFrame:
@@ -146,7 +145,7 @@ def counted(case: PaperCase, count: int, protocol: Protocol, name: str) -> dict[
     }
 
 
-def _papers(row: Row, name: str) -> dict[str, Any]:
+def _papers(row: PaperRow, name: str) -> dict[str, Any]:
     """The paper's own numbers: its B-spline stands beside both constructions of one."""
     spline = (row.iterations, row.seconds, row.ratio)
     published = {"quartic": (0, row.quartic_seconds, 1.0), "nielson": spline, "kim": spline}

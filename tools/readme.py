@@ -14,7 +14,7 @@ from pathlib import Path
 
 from quatspline.catalogue import PACKAGE, found
 from quatspline.findings import targets
-from quatspline.findings.findings import lines, reader
+from quatspline.findings.findings import findings, lines, reader
 from quatspline.runs.manifest import MANIFEST, read_json
 from quatspline.system.atomic import replacing
 
@@ -31,7 +31,7 @@ TREATED = re.compile(r"^Schemes?: (.+)\.$", re.M)
 
 def findings_block() -> str:
     """The findings, from the reference tables."""
-    return "\n".join(lines(REFERENCE))
+    return "\n".join(lines(findings(reader(REFERENCE))))
 
 
 def derivations() -> dict[str, Path]:
@@ -115,6 +115,7 @@ def adopt(results: Path) -> None:
 
 
 def main() -> None:
+    """Renew the quotes, of adopted results where there are any."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--adopt", type=Path, metavar="RESULTS")
     arguments = parser.parse_args()

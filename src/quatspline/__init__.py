@@ -1,4 +1,4 @@
-"""quatspline: which scheme should interpolate my orientations, and what does it cost me?
+"""Which scheme should interpolate my orientations, and what does it cost me?
 
 Keyframes go in, a scheme makes a curve of them, instruments measure the curve, and tables, figures
 and a page show what was measured.  Start with ``quatspline.build``.

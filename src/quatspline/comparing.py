@@ -1,9 +1,7 @@
-"""Compare schemes on somebody's own keyframes: one table, figures, a recommendation and a page."""
+"""Compare schemes on somebody's own keyframes: the table, and the curves behind it."""
 
 from __future__ import annotations
 
-import sys
-import time
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
@@ -21,18 +19,13 @@ from quatspline.instruments.fairness import fairness
 from quatspline.instruments.rescue import solved
 from quatspline.instruments.trials import Row, attempted, facts
 from quatspline.keyframes import Keyframes
-from quatspline.options import declared_by
+from quatspline.options import among
 from quatspline.runs.experiment import Run
 from quatspline.solving import ConvergenceError
-from quatspline.system.stdout import say
-from quatspline.timing.own_times import timed
-from quatspline.timing.practical import left_out
+from quatspline.timing.own_keyframes import left_out, seconds_of
 
 if TYPE_CHECKING:
     import pandas as pd
-
-    from quatspline.motion.files import Motion
-    from quatspline.runs.results import Results
 
 TOLERANCE = 1e-9
 """Of iterative schemes, in rad."""
@@ -48,14 +41,6 @@ NOTE = (
     "segment is measured, however many there are; failure says why a scheme was not. Compare seconds within this "
     "table only."
 )
-FILES = [
-    *(f"compare{end}" for end in (".csv", ".md", ".png", ".svg", ".caption.txt")),
-    *(f"rates{end}" for end in (".png", ".svg", ".caption.txt")),
-    *("recommendation.md", "report.html"),
-]
-"""What the command writes."""
-BARS = "Torque energy over the least of all schemes compared; hollow: not C2 as measured here.\n"
-RATES = "Norms of the angular velocity and acceleration over time; grey lines are keyframes.\n"
 FORMATS = {
     "misses": ".1e",
     **{f"{name}_over_least": ".4f" for name in ENERGIES},
@@ -101,17 +86,17 @@ def compare(
     >>> table.set_index("scheme")["continuity"].to_dict()
     {'quartic': 2, 'slerp': 0}
     """
-    keyframes = _prepared(times, quaternions, closed)
-    return _compared(keyframes, schemes)[0]
+    keyframes = prepared(times, quaternions, closed)
+    return compared(keyframes, schemes)[0]
 
 
-def _prepared(times: ArrayLike | None, quaternions: ArrayLike, closed: bool) -> Keyframes:
+def prepared(times: ArrayLike | None, quaternions: ArrayLike, closed: bool) -> Keyframes:
     """Keyframes with times since the first: instruments divide steps that the times of a clock round."""
     keyframes = kf.prepare(times, quaternions, closed=closed)
     return replace(keyframes, times=keyframes.knots)
 
 
-def _compared(
+def compared(
     keyframes: Keyframes, named: Sequence[str] | None
 ) -> tuple[pd.DataFrame, dict[str, Curve]]:
     """The table, and the curves that were measured."""
@@ -126,12 +111,12 @@ def _compared(
     curves: dict[str, Curve] = {}
     for name in Run(quick=True).progress(names, label="compare"):
         reason = left_out(name, keyframes.count) if named is None else None
-        measure = partial(_measured, name, keyframes, curves)
+        measure = partial(_row, name, keyframes, curves)
         row = attempted(measure)[0] if reason is None else {"failure": reason}
         rows.append({"scheme": name} | row)
     table = pd.DataFrame(rows).reindex(columns=COLUMNS)
     table["keyframes_length"] = _steps(keyframes)
-    for name, seconds in timed(keyframes, curves).items():
+    for name, seconds in seconds_of(keyframes, curves).items():
         table.loc[table["scheme"] == name, list(seconds)] = list(seconds.values())
     for name in ENERGIES:
         table[f"{name}_over_least"] = _over_least(table[name])
@@ -153,24 +138,15 @@ COLUMNS = [
     *("scheme", "continuity", "misses"),
     *(f"{name}_over_least" for name in ENERGIES),
     *("key_speed", "peak_speed", *ENERGIES, "length", "keyframes_length"),
-    *(
-        "support",
-        "solver",
-        "iterations",
-        "rates",
-        "version",
-        "seconds_set_up",
-        "seconds_per_sample",
-        "note",
-        "failure",
-    ),
+    *("support", "solver", "iterations", "rates", "version"),
+    *("seconds_set_up", "seconds_per_sample", "note", "failure"),
 ]
 
 
-def _measured(name: str, keyframes: Keyframes, curves: dict[str, Curve]) -> list[Row]:
+def _row(name: str, keyframes: Keyframes, curves: dict[str, Curve]) -> list[Row]:
     """The row of one scheme; its curve is kept for timings and figures."""
     cls = scheme(name)
-    given = {"tolerance": TOLERANCE} if "tolerance" in declared_by(cls) else {}
+    given = among(cls, {"tolerance": TOLERANCE})
     try:
         curve, note = solved(cls, keyframes, **given)
     except ConvergenceError as error:  # in words for a table
@@ -216,53 +192,3 @@ def _misses(curve: Curve) -> float:
     """The largest angle at a keyframe, rad."""
     at = curve.times[: curve.keyframes.count]
     return float(quaternion.distance(curve(at), curve.keyframes.quaternions).max())
-
-
-# -- the command ---------------------------------------------------------------------------------
-
-
-def command(
-    motion: Motion,
-    *,
-    schemes: Sequence[str] | None,
-    closed: bool,
-    results: Results,
-    call: Sequence[str] = (),
-) -> int:
-    """Serve ``quatspline compare``: tables, figures, the recommendation and the page in a folder.
-
-    Raises
-    ------
-    ValueError
-        On bad keyframes, an unknown scheme, or files in the folder that are not its own.
-    """
-    import matplotlib as mpl
-
-    from quatspline.figures import comparison, style
-    from quatspline.findings import advice
-    from quatspline.page import own_scene, write_page
-    from quatspline.page.sections import OWN
-
-    mpl.use("Agg")  # nothing here may open a window
-
-    began = time.perf_counter()
-    keyframes = _prepared(motion.times, motion.quaternions, closed)
-    results.begin(call, schemes=list(schemes) if schemes is not None else None)
-    table, curves = _compared(keyframes, schemes)
-    table = results.table("compare", table, title=TITLE, note=NOTE, formats=FORMATS, keys=[])
-    found = advice.recommendation(table)
-    say(advice.lines(found))  # before a disk runs full
-    results.text("recommendation.md", advice.markdown(found))
-    names = advice.shown(table)
-    with style.house():
-        results.figure("compare", comparison.bars(table))
-        results.figure("rates", comparison.rates({name: curves[name] for name in names}, keyframes))
-    results.text("compare.caption.txt", BARS)
-    results.text("rates.caption.txt", RATES)
-    entry = {"title": TITLE, "size": f"{keyframes.count} keyframes", "seed": None}
-    results.record("compare", entry | {"seconds": round(time.perf_counter() - began, 3)})
-    results.finish()
-    scene = own_scene("own", "Your keyframes", keyframes, motion.positions, names)
-    page = write_page(results, title=TITLE, scenes=[scene], sections=OWN, findings=found)
-    print(page, file=sys.stderr)
-    return 0

@@ -143,12 +143,6 @@ class Curve(abc.ABC):
         curve._build(keyframes, given)
         return curve
 
-    @classmethod
-    def impractical(cls, count: int) -> str | None:
-        """Why experiments leave out so many keyframes; None where they do not."""
-        limit = cls.practical_keyframes
-        return f"over budget beyond {limit} keyframes" if limit and count > limit else None
-
     # -- what a scheme writes -------------------------------------------------------------------
 
     @abc.abstractmethod
@@ -171,8 +165,11 @@ class Curve(abc.ABC):
 
     @property
     def times(self) -> NDArray[Any]:
-        """Keyframe times as given, (n,) or, closed, (n + 1,): float64, but int64 for integers that
-        float64 does not hold, and longdoubles, datetimes and timedeltas as they are."""
+        """Keyframe times as given, (n,) or, closed, (n + 1,).
+
+        float64, but int64 for integers that float64 does not hold, and longdoubles, datetimes and
+        timedeltas as they are.
+        """
         return self._keyframes.times
 
     @cached_property
@@ -194,6 +191,11 @@ class Curve(abc.ABC):
     def keyframes(self) -> kf.Keyframes:
         """The prepared keyframes."""
         return self._keyframes
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """The scheme's own options as given, a copy."""
+        return dict(self._options)
 
     @property
     def numeric_orders(self) -> tuple[int, ...]:
@@ -377,8 +379,10 @@ class Curve(abc.ABC):
         return inner
 
     def inner(self, t: FloatArray, order: int = 0) -> FloatArray:
-        """Values (m, K, 4 or 3) at times since the first keyframe (m,), unchecked: nothing is rounded
-        by adding a clock's time and taking it off again."""
+        """Values (m, K, 4 or 3) at times since the first keyframe (m,), unchecked.
+
+        Nothing is rounded by adding a clock's time and taking it off again.
+        """
         out = np.empty((t.size, self._keyframes.tracks.shape[0], 3 if order else 4))
         self._evaluate(np.array(t, dtype=float), 0.0, np.inf, order, out.reshape(-1), 1)
         return out

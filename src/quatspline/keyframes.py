@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from quatspline.inputs import stamps
 from quatspline.inputs.arrays import IntArray, at, float_array, refuse_infinite, switch
 from quatspline.inputs.orientations import directions, explain_norms, orientations
-from quatspline.inputs.stamps import shown
+from quatspline.inputs.spacings import DIGITS, LONGEST, SHORTEST, explain_times
 from quatspline.kernels.jit import compiled
 from quatspline.quaternion import ANTIPODAL, FLIP, FloatArray
 
@@ -24,13 +24,6 @@ UNIFORM = 1e-9
 
 TICKS = 1e-4
 """Integer stamps of even times are uneven by a tick or two: below this share of a spacing it is that."""
-
-SHORTEST, LONGEST = 2.0**-200, 2.0**200
-"""Spacings within these bounds: kernels form powers of them, and accelerations their inverse square."""
-
-DIGITS = 1e-14
-"""A spacing below this share of the whole duration has hardly a digit left in the times after it."""
-
 
 FLOAT: np.dtype[Any] = np.dtype(np.float64)
 
@@ -241,7 +234,7 @@ def _times(
     plain = t.dtype == np.float64
     since = t if plain else float_array("times", stamps.elapsed(t, t[0]))
     if not _space(since, t[0] if plain else 0.0, knots, spacings):
-        _explain_times(t, knots, spacings)
+        explain_times(t, knots, spacings)
     return t.copy(), knots, spacings, kind
 
 
@@ -256,40 +249,6 @@ def _space(t, origin, knots, spacings):
         spacings[i] = knots[i + 1] - knots[i]
         bad += not least <= spacings[i] <= LONGEST
     return bad == 0
-
-
-def _explain_times(t: NDArray[Any], knots: FloatArray, spacings: FloatArray) -> None:
-    """Refuse times that do not increase, or with spacings that float64 cannot carry."""
-    if t.dtype.kind == "f":
-        refuse_infinite("times", t)
-    stuck = np.flatnonzero(t[1:] <= t[:-1])
-    if stuck.size:
-        i = int(stuck[0]) + 1
-        raise ValueError(
-            f"times[{i}] = {shown(t[i])} does not exceed times[{i - 1}] = {shown(t[i - 1])}: "
-            "times must strictly increase"
-        )
-    if not np.isfinite(knots[-1]):
-        raise ValueError(f"times span {shown(t[0])} to {shown(t[-1])}: too long for float64")
-    equal = np.flatnonzero(spacings <= 0.0)
-    if equal.size:
-        i = int(equal[0]) + 1
-        raise ValueError(
-            f"times[{i}] = {shown(t[i])} is too close to times[{i - 1}] = {shown(t[i - 1])}, "
-            f"{float(knots[i])!r} after times[0]: float64 does not tell them apart"
-        )
-    wrong = (spacings < SHORTEST) | (spacings > LONGEST)
-    if not wrong.any():
-        wrong = spacings < DIGITS * knots[-1]
-    i = int(np.argmax(wrong))
-    h, bound = float(spacings[i]), f"below {DIGITS:.1g} of the whole duration, {knots[-1]:.3g}"
-    if h < SHORTEST:
-        bound = f"shorter than {SHORTEST:.2g}"
-    elif h > LONGEST:
-        bound = f"longer than {LONGEST:.2g}"
-    raise ValueError(
-        f"times[{i}] to times[{i + 1}] is {h!r}, {bound}: float64 cannot carry its rates"
-    )
 
 
 def _refuse_antipodes(keyframes: Keyframes) -> None:

@@ -6,6 +6,7 @@ import difflib
 import inspect
 import math
 import numbers
+import operator
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -14,6 +15,7 @@ from typing import (
     TYPE_CHECKING,
     Annotated,
     Any,
+    ClassVar,
     Literal,
     Union,
     get_args,
@@ -31,55 +33,47 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Above:
+class Bound:
+    """Marks a number that keeps to one side of a bound, or within it on both."""
+
+    bound: float
+    words: ClassVar[str]
+    keeps: ClassVar[Callable[[float, float], bool]]
+
+    def accepts(self, value: float) -> bool:
+        """Whether a number keeps to it."""
+        return type(self).keeps(value, self.bound)
+
+    def __str__(self) -> str:
+        return self.words.format(self.bound)
+
+
+class Above(Bound):
     """Marks a number that must exceed a bound."""
 
-    bound: float
-
-    def accepts(self, value: float) -> bool:
-        return value > self.bound
-
-    def __str__(self) -> str:
-        return f"above {self.bound:g}"
+    words, keeps = "above {:g}", operator.gt
 
 
-@dataclass(frozen=True)
-class AtLeast:
+class AtLeast(Bound):
     """Marks a number that must reach a bound."""
 
-    bound: float
-
-    def accepts(self, value: float) -> bool:
-        return value >= self.bound
-
-    def __str__(self) -> str:
-        return f"at least {self.bound:g}"
+    words, keeps = "at least {:g}", operator.ge
 
 
-@dataclass(frozen=True)
-class AtMost:
+class AtMost(Bound):
     """Marks a number that must not exceed a bound."""
 
-    bound: float
-
-    def accepts(self, value: float) -> bool:
-        return value <= self.bound
-
-    def __str__(self) -> str:
-        return f"at most {self.bound:g}"
+    words, keeps = "at most {:g}", operator.le
 
 
-@dataclass(frozen=True)
-class Within:
+class Within(Bound):
     """Marks a number whose magnitude must not exceed a bound."""
 
-    bound: float
+    words = "between -{0:g} and {0:g}"
 
     def accepts(self, value: float) -> bool:
+        """Whether a number keeps to it."""
         return abs(value) <= self.bound
-
-    def __str__(self) -> str:
-        return f"between {-self.bound:g} and {self.bound:g}"
 
 
 LONG = 60
@@ -115,6 +109,12 @@ def _declared(fit: Callable[..., Any]) -> dict[str, inspect.Parameter]:
         for p in inspect.signature(fit).parameters.values()
         if p.kind is p.KEYWORD_ONLY
     }
+
+
+def among(scheme: type[Curve], wanted: Mapping[str, Any]) -> dict[str, Any]:
+    """Those of the wanted options that a scheme has."""
+    known = declared_by(scheme)
+    return {name: value for name, value in wanted.items() if name in known}
 
 
 def checked(scheme: type[Curve], given: Mapping[str, Any]) -> dict[str, Any]:

@@ -152,7 +152,7 @@ def rotate(q: ArrayLike, v: ArrayLike) -> FloatArray:
     return _apply(_rotate, (q, 4), (v, 3), width=3)
 
 
-def between(u: ArrayLike, v: ArrayLike) -> FloatArray:
+def shortest_rotation(u: ArrayLike, v: ArrayLike) -> FloatArray:
     """The least rotation (..., 4) that turns direction u (..., 3) into direction v (..., 3).
 
     Stable for nearly parallel directions.  Opposite directions turn half a turn about an axis
@@ -171,7 +171,7 @@ def between(u: ArrayLike, v: ArrayLike) -> FloatArray:
             raise ValueError(f"{name} has a direction of length zero")
         vector = vector / largest  # squares of very small or large numbers leave float64
         directions.append(vector / np.linalg.norm(vector, axis=-1, keepdims=True))
-    return _apply(_between, (directions[0], 3), (directions[1], 3), width=4)
+    return _apply(_shortest_rotation, (directions[0], 3), (directions[1], 3), width=4)
 
 
 def right_jacobian(r: ArrayLike) -> FloatArray:
@@ -262,7 +262,7 @@ def _rotate(q, v, out):
 
 
 @compiled
-def _between(u, v, out):
+def _shortest_rotation(u, v, out):
     for i in range(out.shape[0]):
         a, b = vec_at(u[i], 0), vec_at(v[i], 0)
         # half-angle form: |a + b| = 2 cos(angle/2), |b - a| = 2 sin(angle/2)

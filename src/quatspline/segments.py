@@ -90,8 +90,10 @@ class SegmentCurve(Curve):
         return reach
 
     def _fit_window(self, low: float, high: float) -> None:
-        """Fit the chunks of segments from low to high, times since the first keyframe, where that was
-        not done before."""
+        """Fit the chunks of segments from low to high where that was not done before.
+
+        Both are times since the first keyframe.
+        """
         inside = low >= 0.0 and high < self.segment_knots[-1]
         if self._keyframes.closed and not inside:
             low, high = 0.0, self.segment_knots[-1]

@@ -9,10 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from quatspline import quaternion
+from quatspline.catalogue import scheme
 from quatspline.curve import Curve
 from quatspline.keyframes import Keyframes, prepare
-from quatspline.options import Above, AtLeast, Count, checked, nearest, per_keyframe
+from quatspline.options import Above, AtLeast, Count, among, checked, nearest, per_keyframe
 from quatspline.solving import ConvergenceError, SolveReport
+from toys import Toy
 from walks import random_units, uneven, walk
 
 Q = walk(5, 60.0)
@@ -252,19 +254,24 @@ def test_four_ulp_of_an_end_count_as_the_end(first: float, span: float) -> None:
 # -- options ------------------------------------------------------------------------------------
 
 
-def fit(
-    self: Any,
-    keyframes: Keyframes,
-    *,
-    kind: Literal["one", "two"] = "one",
-    tolerance: Annotated[float, Above(0.0)] = 1e-6,
-    ratio: Annotated[float, AtLeast(2)] = 2.0,
-    count: Count = 3,
-    flag: bool = False,
-    limit: int | None = None,
-    value: float = 0.0,
-) -> None:
+class Choosy(Toy):
     """Every kind of annotation that an option may have."""
+
+    name = "test"
+
+    def _fit(
+        self,
+        keyframes: Keyframes,
+        *,
+        kind: Literal["one", "two"] = "one",
+        tolerance: Annotated[float, Above(0.0)] = 1e-6,
+        ratio: Annotated[float, AtLeast(2)] = 2.0,
+        count: Count = 3,
+        flag: bool = False,
+        limit: int | None = None,
+        value: float = 0.0,
+    ) -> None:
+        """Nothing to prepare."""
 
 
 @pytest.mark.parametrize(
@@ -278,7 +285,18 @@ def fit(
     ],
 )
 def test_good_options(options: dict[str, Any]) -> None:
-    assert checked("test", fit, options) == options
+    assert checked(Choosy, options) == options
+
+
+def test_options_among_those_wanted_are_the_declared() -> None:
+    assert among(Choosy, {"count": 2, "stop": "change", "flag": True}) == {"count": 2, "flag": True}
+
+
+def test_a_curve_tells_its_options() -> None:
+    curve = scheme("nielson")(None, walk(4, 20.0, seed=0), tolerance=1e-9)
+    assert curve.options == {"tolerance": 1e-9}
+    curve.options["tolerance"] = 1.0
+    assert curve.options == {"tolerance": 1e-9}
 
 
 @pytest.mark.parametrize(
@@ -306,7 +324,7 @@ def test_good_options(options: dict[str, Any]) -> None:
 )
 def test_bad_options(options: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
-        checked("test", fit, options)
+        checked(Choosy, options)
 
 
 def test_options_per_keyframe() -> None:

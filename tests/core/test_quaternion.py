@@ -148,29 +148,29 @@ def test_tiny_rotations_keep_their_digits(axis: np.ndarray) -> None:
 def test_between_directions(angle: float) -> None:
     u, w = np.array([0.6, 0.0, 0.8]), np.array([0.8, 0.0, -0.6])
     v = math.cos(angle) * u + math.sin(angle) * w
-    q = qn.between(3.0 * u, 0.2 * v)
+    q = qn.shortest_rotation(3.0 * u, 0.2 * v)
     assert off(2 * qn.log(q), exactly(angle * np.cross(u, w))) < max(SMALL, 4e-16 / angle * 4)
     assert np.linalg.norm(qn.rotate(q, u) - v) < EXACT
 
 
 def test_between_exactly_representable_tiny_turn() -> None:
-    q = qn.between([1.0, 0.0, 0.0], [1.0, TINY, 0.0])
+    q = qn.shortest_rotation([1.0, 0.0, 0.0], [1.0, TINY, 0.0])
     assert off(2 * qn.log(q), exactly(np.array([0.0, 0.0, TINY]))) < SMALL
 
 
 def test_between_parallel_and_opposite() -> None:
-    assert np.array_equal(qn.between([0.0, 2.0, 0.0], [0.0, 5.0, 0.0]), [1, 0, 0, 0])
+    assert np.array_equal(qn.shortest_rotation([0.0, 2.0, 0.0], [0.0, 5.0, 0.0]), [1, 0, 0, 0])
     for u in [*np.eye(3), *AXES, np.array([1.0, 1.0, 1.0]), np.array([1e-200, 0.0, 0.0])]:
-        q = qn.between(u, -u)
+        q = qn.shortest_rotation(u, -u)
         direction = u / np.abs(u).max() / np.linalg.norm(u / np.abs(u).max())
         assert np.linalg.norm(qn.rotate(q, direction) + direction) < EXACT
         assert abs(q[1:] @ direction) < EXACT
         assert abs(np.linalg.norm(q) - 1.0) < EXACT
-        nearly = qn.between(direction, -direction + 1e-10 * np.roll(direction, 1))
+        nearly = qn.shortest_rotation(direction, -direction + 1e-10 * np.roll(direction, 1))
         assert np.isfinite(nearly).all()
     for name, vectors in {"u": ([0, 0, 0], [1, 0, 0]), "v": ([1, 0, 0], [0, 0, 0])}.items():
         with pytest.raises(ValueError, match=rf"^{name} has a direction of length zero"):
-            qn.between(*vectors)
+            qn.shortest_rotation(*vectors)
 
 
 # -- half turns and antipodes -------------------------------------------------------------------

@@ -27,7 +27,7 @@ from quatspline.claims.claim import (
 )
 from quatspline.claims.published import published, works
 from quatspline.figures import style
-from quatspline.runs.experiment import Run, found
+from quatspline.runs.experiment import Run, files
 
 OURS = ["slerp", "quartic", "nielson", "shoemake-bezier"]
 PAPERS = "printed Q'' at a knot is the curve's, steps about any axes"
@@ -41,7 +41,7 @@ def square(x: float) -> float:
 
 @pytest.fixture(scope="module")
 def table() -> pd.DataFrame:
-    module = load(found()["claims"], "experiment")
+    module = load(files()["claims"], "experiment")
     run = Run(quick=True, schemes=OURS)
     rows = [row for cell in module.cells(run) for row in module.measure_cell(run, **cell)]
     return module.gather(run, pd.DataFrame(json.loads(json.dumps(rows))))
@@ -211,7 +211,7 @@ def test_works_that_were_not_read_are_in_the_bibliography() -> None:
 
 
 def test_figure_and_caption_say_the_verdicts(table: pd.DataFrame) -> None:
-    module = load(found()["claims"], "experiment")
+    module = load(files()["claims"], "experiment")
     with style.house():
         figure = module.draw(table)
     texts = {text.get_text() for text in figure.axes[0].texts}
@@ -230,7 +230,7 @@ def test_walks_keep_their_step() -> None:
 
 @pytest.fixture(scope="module")
 def of_kim() -> pd.DataFrame:
-    module = load(found()["claims"], "experiment")
+    module = load(files()["claims"], "experiment")
     run = Run(quick=True, schemes=["kim"])
     return module.gather(run, pd.DataFrame(module.measure_cell(run, "kim")))
 
@@ -240,7 +240,7 @@ def test_kim_is_not_red_for_the_papers_cost(of_kim: pd.DataFrame) -> None:
     assert departing["claim"].str.startswith("cost over the quartic's").all()
     assert len(departing) > 0
     assert (departing["fault"] == PUBLICATION).all()
-    module = load(found()["claims"], "experiment")
+    module = load(files()["claims"], "experiment")
     with style.house():
         axes = module.draw(of_kim).axes[0]
     shown = axes.images[0].get_array()
@@ -257,7 +257,7 @@ def test_a_quick_verdict_is_the_references_or_open(name: str, table: pd.DataFram
     if name in PEERS:
         if name not in schemes():
             pytest.skip(f"{name}: its library is not installed")
-        module = load(found()["claims"], "experiment")
+        module = load(files()["claims"], "experiment")
         run = Run(quick=True, schemes=[name])
         quick = module.gather(run, pd.DataFrame(module.measure_cell(run, name)))
     else:

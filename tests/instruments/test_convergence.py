@@ -10,7 +10,7 @@ from quatspline.catalogue import load, scheme, shipped
 from quatspline.curve import Curve
 from quatspline.instruments import convergence
 from quatspline.instruments.continuity import jumps
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 from quatspline.solving import SolveReport
 from quatspline.trajectories.walks import walk
 

@@ -11,9 +11,10 @@ import pytest
 
 from quatspline.catalogue import load, scheme, shipped
 from quatspline.curve import Curve
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run
 from quatspline.segments import LAZY
 from quatspline.timing import cost, speed
+from quatspline.timing.budget import Budget, Call, calls, seconds
 from quatspline.trajectories.walks import walk
 
 AMPLE = 600.0
@@ -22,34 +23,22 @@ AMPLE = 600.0
 
 @pytest.fixture
 def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
-    """The time, which only toy calls advance."""
+    """The time, by the clock and of the process, which only toy calls advance."""
     now = [0.0]
     monkeypatch.setattr(time, "perf_counter", lambda: now[0])
+    monkeypatch.setattr(time, "process_time", lambda: now[0])
     return now
 
 
 def toy(clock: list[float], seconds: Callable[[int], float], made: list[int]) -> cost.Task:
-    def task(size: int) -> cost.Call:
+    def prepare(size: int) -> Call:
         def call() -> None:
             made.append(size)
             clock[0] += seconds(size)
 
         return call
 
-    return task
-
-
-def test_rungs_lead_up_to_a_size():
-    assert cost.rungs(1_000_000, 5) == [10, 100, 1000, 10_000, 100_000]
-    assert cost.rungs(100, 1) == [1, 10]
-    assert cost.rungs(5, 5) == [5]
-
-
-@pytest.mark.parametrize(("power", "factor"), [(0, 10), (1, 10), (2, 100)])
-def test_time_is_predicted_by_its_growth(clock, power, factor):
-    task = toy(clock, lambda size: 1e-6 * size**power, [])
-    predicted = cost.predicted(task, 1000, 1, budget=1e9)
-    assert predicted == pytest.approx(1e-6 * 100**power * factor)
+    return cost.Task(prepare, linear=False)
 
 
 def test_a_call_over_budget_is_never_made(clock):
@@ -57,7 +46,7 @@ def test_a_call_over_budget_is_never_made(clock):
     found = cost.costs(
         {"square": toy(clock, lambda size: 1e-6 * size**2, made)},
         100_000,
-        budget=5.0,
+        budget=Budget(5.0, seconds),
         rounds=3,
         duration=0.01,
     )
@@ -72,7 +61,7 @@ def test_fast_calls_are_timed_in_rounds_and_slow_ones_once(clock):
         "fast": toy(clock, lambda size: 1e-6 * size, []),
         "slow": toy(clock, lambda size: 1e-3 * size, made),
     }
-    found = cost.costs(tasks, 1000, budget=5.0, rounds=4, duration=0.01)
+    found = cost.costs(tasks, 1000, budget=Budget(5.0, seconds), rounds=4, duration=0.01)
     assert found["fast"].seconds == pytest.approx(1e-3)
     assert found["fast"].iqr == pytest.approx(0.0, abs=1e-12)
     assert found["fast"].rounds == 4
@@ -81,22 +70,12 @@ def test_fast_calls_are_timed_in_rounds_and_slow_ones_once(clock):
     assert made.count(1000) == 1
 
 
-def test_a_hiccup_is_not_taken_for_growth(clock):
-    hiccups = {10: [0.4]}
-
-    def seconds(size: int) -> float:
-        waits = hiccups.get(size, [])
-        return 1e-5 * size + (waits.pop() if waits else 0.0)
-
-    assert cost.predicted(toy(clock, seconds, []), 100, 1, 5.0) == pytest.approx(1e-3)
-
-
 def test_a_failure_is_told_and_the_others_are_timed(clock):
-    def broken(size: int) -> cost.Call:
+    def broken(size: int) -> Call:
         raise ValueError("no such size")
 
-    tasks = {"broken": broken, "fast": toy(clock, lambda size: 1e-6, [])}
-    found = cost.costs(tasks, 10, budget=1.0, rounds=1, duration=1e-4)
+    tasks = {"broken": cost.Task(broken), "fast": toy(clock, lambda size: 1e-6, [])}
+    found = cost.costs(tasks, 10, budget=Budget(1.0, seconds), rounds=1, duration=1e-4)
     assert found["broken"].failure == "ValueError: no such size"
     assert found["fast"].failure is None
 
@@ -161,30 +140,42 @@ def test_set_up_fits_all_of_a_long_curve(monkeypatch, count):
     monkeypatch.setattr(
         cls, "_fit", lambda self, *given, **more: (made.append(self), fit(self, *given, **more))[1]
     )
-    module.TASKS["set-up"](cls)(count)()
+    module.TASKS["set-up"](cls).prepare(count)()
     assert len(made) == 1
     assert made[0].segments.shape[1] > LAZY
     assert made[0]._waiting is None
 
 
 def test_what_a_scheme_raises_stands_on_one_line():
-    def task(size: int) -> cost.Call:
+    def task(size: int) -> Call:
         raise ValueError("not\ntoday")
 
-    found = cost.costs({"a": task}, 10, budget=1.0, rounds=1, duration=0.01)
+    found = cost.costs(
+        {"a": cost.Task(task)}, 10, budget=Budget(1.0, seconds), rounds=1, duration=0.01
+    )
     assert found["a"].failure == "ValueError: not today"
 
 
-def test_over_budget_by_a_clock_carries_no_seconds(clock, monkeypatch):
-    """The table of two runs may differ in timing columns alone."""
-    peer = scheme("scipy-slerp")
-    made = peer.__init__
+def test_speed_leaves_out_libraries_by_counts_alone(monkeypatch):
+    """The same rows in every run: the clock is not asked, and no seconds stand in the reason."""
 
-    def slow(self, *given, **more):
-        made(self, *given, **more)
-        clock[0] += 1.0
+    def never() -> float:
+        raise AssertionError("a clock was read")
 
-    monkeypatch.setattr(peer, "__init__", slow)
-    keyframes = walk(np.random.default_rng(0), 10 * speed.FEW, 20.0)[:, 0]
-    row = next(speed.measured(speed._setup("set-up", keyframes), ["scipy-slerp"], 1))
-    assert row == speed.Row("scipy-slerp", failure="over budget")
+    scheme("scipy-slerp")(None, walk(np.random.default_rng(0), 5, 20.0)[:, 0])  # imported
+    monkeypatch.setattr(speed, "BUDGET", Budget(limit=10.0, meter=calls))
+    monkeypatch.setattr(time, "perf_counter", never)
+    monkeypatch.setattr(time, "process_time", never)
+    keyframes = walk(np.random.default_rng(0), 100, 20.0)[:, 0]
+    row = next(speed.measured(speed.set_up("set-up", keyframes), ["scipy-slerp"], 1))
+    assert row == speed.Timed("scipy-slerp", failure="over budget")
+
+
+@pytest.mark.parametrize(
+    ("name", "most"), [("interpolatepy-squad-c2", 20_000), ("splines-catmull-rom", 1000)]
+)
+def test_speed_measures_libraries_up_to_some_number_of_keyframes(name, most):
+    """Of the tasks' 1000, 20,000 and a million."""
+    reasons = [speed.BUDGET.refusal(scheme(name), count) for count in (1000, 20_000)]
+    assert reasons == [None, None if most == 20_000 else "over budget"]
+    assert speed.BUDGET.refusal(scheme(name), 10**6, (1, 0, 0)) == "over budget"

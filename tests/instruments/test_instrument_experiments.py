@@ -8,9 +8,9 @@ import pandas as pd
 import pytest
 
 from quatspline.catalogue import load
+from quatspline.cli import running
 from quatspline.figures import style
-from quatspline.runs import running
-from quatspline.runs.experiment import Run, found
+from quatspline.runs.experiment import Run, files
 from quatspline.runs.results import Results
 
 SCHEMES = ["slerp", "squad", "shoemake-bezier"]
@@ -47,7 +47,7 @@ COLUMNS = {
 def measured(request, tmp_path_factory):
     """An experiment, its cells, and its table as read back from the file."""
     name = request.param
-    module = load(found()[name], "experiment")
+    module = load(files()[name], "experiment")
     run = Run(quick=True, schemes=SCHEMES)
     cells = module.cells(run)
     rows = [row for cell in cells for row in _rows(module, run, cell)]
@@ -100,7 +100,7 @@ def test_a_cell_gives_the_same_rows_again(measured):
 
 
 def test_where_nothing_can_be_measured_there_is_a_table_of_reasons(tmp_path, monkeypatch):
-    module = load(found()["noise"], "experiment")
+    module = load(files()["noise"], "experiment")
 
     def broken(name):
         raise TypeError(f"{name} has no such option")
@@ -115,7 +115,7 @@ def test_where_nothing_can_be_measured_there_is_a_table_of_reasons(tmp_path, mon
 @pytest.mark.parametrize(("name", "order"), [("kim", 3), ("quartic", 2), ("local-quintic", 4)])
 def test_quick_orders_are_those_of_full_size(name, order):
     """They are read between the two finest levels; between 41 and 81 keyframes kim's is 3.50."""
-    module = load(found()["accuracy"], "experiment")
+    module = load(files()["accuracy"], "experiment")
     quick, full = (
         module.gather(run, pd.DataFrame(module.measure_cell(run, "uniform", name)))
         for run in (Run(quick=True), Run(quick=False))
@@ -124,7 +124,7 @@ def test_quick_orders_are_those_of_full_size(name, order):
 
 
 def test_quick_size_measures_libraries_at_fewer_keyframes():
-    module = load(found()["accuracy"], "experiment")
+    module = load(files()["accuracy"], "experiment")
     levels = [
         module.levels(Run(quick=True), kind, name)
         for kind, name in [("uniform", "kim"), ("jittered", "kim"), ("uniform", "scipy-slerp")]

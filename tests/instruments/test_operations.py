@@ -15,7 +15,7 @@ import pytest
 from quatspline.catalogue import load, scheme, shipped
 from quatspline.curve import Curve
 from quatspline.kernels.operations import Operations, Per
-from quatspline.options import declared_by
+from quatspline.options import among
 from quatspline.timing.operations import executed, iterations, per_keyframe, per_sample
 from quatspline.trajectories.paper import CASES, SOLVE
 
@@ -25,9 +25,8 @@ table1 = load(shipped("experiments") / "table1.py", "experiment")
 
 
 def solved(name: str, case: str, stop: str | None = None) -> Curve:
-    known = declared_by(scheme(name))
-    options = SOLVE | ({"stop": stop} if stop else {})
-    given = {key: value for key, value in options.items() if key in known}
+    wanted = SOLVE | ({"stop": stop} if stop else {})
+    given = among(scheme(name), wanted)
     return scheme(name).from_keyframes(CASES[case].keyframes(), **given)
 
 

@@ -15,9 +15,10 @@ import pytest
 
 from pages import EVIL, Elements, scenes
 from quatspline import page as page_module
+from quatspline.cli import running
 from quatspline.cli.commands import main
 from quatspline.figures.meshes import key_mesh
-from quatspline.findings import choosing, targets
+from quatspline.findings import decisions, targets
 from quatspline.findings.findings import FINDINGS, findings, reader
 from quatspline.findings.quotes import EXPRESSIONS, Cell, Quote, said
 from quatspline.keyframes import prepare
@@ -28,7 +29,6 @@ from quatspline.page.plots import scheme_look
 from quatspline.page.sections import RANKINGS, SECTIONS
 from quatspline.page.table1 import duration
 from quatspline.quaternion import exp
-from quatspline.runs import running
 from quatspline.runs.results import Results
 from quatspline.trajectories.paper import CASES
 from tools.readme import REFERENCE
@@ -62,7 +62,7 @@ def test_a_sentence_ties_numbers_to_cells() -> None:
 
 def test_every_finding_holds_on_the_reference_tables() -> None:
     topics = [finding.topic for finding in findings(reader(REFERENCE))]
-    assert topics == [topic for topic, _ in FINDINGS] + [choosing.TABLE] * len(choosing.QUESTIONS)
+    assert topics == [topic for topic, _ in FINDINGS] + [decisions.TABLE] * len(decisions.QUESTIONS)
 
 
 @pytest.mark.parametrize("finding", findings(reader(REFERENCE)), ids=lambda f: f.text[:24])

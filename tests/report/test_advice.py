@@ -10,7 +10,7 @@ import pytest
 
 import quatspline as qs
 from quatspline.comparing import COLUMNS, ENERGIES
-from quatspline.findings import advice
+from quatspline.findings.recommendation import recommendation, shown
 from walks import walk
 
 TIMES = ["seconds_set_up", "seconds_per_sample"]
@@ -35,7 +35,7 @@ def table_of(*rows: dict[str, object]) -> pd.DataFrame:
 
 
 def told(*rows: dict[str, object]) -> list[str]:
-    return list(advice.lines(advice.recommendation(table_of(*rows))))
+    return [finding.text for finding in recommendation(table_of(*rows))]
 
 
 GLOBAL = {"support": "all"}
@@ -103,6 +103,11 @@ def test_a_curve_that_wanders_is_passed_over_and_named() -> None:
         "It turns 7.12 rad where the keyframes need 3.43.",
         "Passed over for wandering: a turns 35.8 rad; the torque of b is 10.0 times its own.",
     ]
+
+
+def test_a_curve_that_wanders_without_a_torque_is_no_ratio() -> None:
+    lines = told(row("a", length=35.8, torque=0.0), row("b", length=1.2, torque=2.0))
+    assert lines[1:] == ["Passed over for wandering: a turns 35.8 rad; it needs no torque."]
 
 
 @pytest.mark.parametrize(
@@ -206,7 +211,7 @@ def test_rest_that_only_a_scheme_out_of_the_choice_has_is_not_compared_with() ->
 def test_what_needs_a_peak_where_another_needs_none() -> None:
     table = table_of(row("a", **GLOBAL), row("quartic", **GLOBAL, torque=1.2))
     table["peak_over_least"] = [1.0, np.inf]
-    line = advice.recommendation(table)[-1].text
+    line = recommendation(table)[-1].text
     assert line.endswith(" and a peak acceleration where another needs none.")
 
 
@@ -254,7 +259,7 @@ def test_curves_of_equal_torque_are_told_apart_by_what_they_claim() -> None:
 
 def test_every_number_is_a_quote() -> None:
     table = table_of(row("a", torque=1.04), row("b", **GLOBAL), row("d3", failure="3 keyframes"))
-    found = [*advice.recommendation(table)]
+    found = [*recommendation(table)]
     assert len(found) == 3
     for finding in found:
         typed = "".join(part for part in finding.parts if isinstance(part, str))
@@ -266,11 +271,11 @@ def test_timings_do_not_change_what_is_said() -> None:
     names = ["local-quintic", "kim", "log-cubic", "quartic", "nielson", "squad", "min-torque"]
     table, rng = qs.compare(None, walk(9, 50.0, seed=1), names), np.random.default_rng(0)
     table[TIMES] = [1e-5, 1e-8]  # as they were seen on a quiet machine
-    said = [finding.text for finding in advice.recommendation(table)]
+    said = [finding.text for finding in recommendation(table)]
     for _ in range(10):
         noise = rng.uniform(0.2, 9.0, (len(table), len(TIMES)))
         jittered = table.assign(
             **dict(zip(TIMES, (table[TIMES].to_numpy() * noise).T, strict=True))
         )
-        assert [finding.text for finding in advice.recommendation(jittered)] == said
-        assert advice.shown(jittered) == advice.shown(table)
+        assert [finding.text for finding in recommendation(jittered)] == said
+        assert shown(jittered) == shown(table)

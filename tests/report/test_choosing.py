@@ -9,11 +9,11 @@ import pandas as pd
 import pytest
 
 from quatspline.catalogue import load
+from quatspline.cli import running
 from quatspline.figures import style
-from quatspline.findings import choosing
+from quatspline.findings import decisions
 from quatspline.findings.findings import findings, reader
-from quatspline.runs import running
-from quatspline.runs.experiment import Run, experiments, found
+from quatspline.runs.experiment import Run, experiments, files
 from quatspline.runs.results import Results
 
 LESS = {"a": -1, "b": -1}
@@ -21,7 +21,7 @@ LESS = {"a": -1, "b": -1}
 
 @pytest.fixture
 def module():
-    return load(found()["choosing"], "experiment")
+    return load(files()["choosing"], "experiment")
 
 
 @pytest.fixture
@@ -50,7 +50,7 @@ def test_a_front_is_what_nothing_beats() -> None:
     """Against the definition, row by row, on random whole numbers with ties."""
     rng = np.random.default_rng(0)
     table = pd.DataFrame(rng.integers(0, 5, (40, 2)), columns=["a", "b"])
-    marks = choosing.pareto(table, LESS)
+    marks = decisions.pareto(table, LESS)
     for i, (a, b) in enumerate(table.to_numpy()):
         others = table.to_numpy()
         beaten = any((x <= a and y <= b and (x < a or y < b)) for x, y in others)
@@ -59,19 +59,19 @@ def test_a_front_is_what_nothing_beats() -> None:
 
 def test_more_may_be_better_and_equals_stay_together() -> None:
     table = pd.DataFrame({"a": [1.0, 1.0, 2.0], "b": [5.0, 5.0, 4.0]})
-    assert list(choosing.pareto(table, {"a": -1, "b": 1})) == ["yes", "yes", "no"]
+    assert list(decisions.pareto(table, {"a": -1, "b": 1})) == ["yes", "yes", "no"]
 
 
 def test_what_is_unknown_is_neither_on_a_front_nor_off() -> None:
     table = pd.DataFrame({"a": [1.0, np.nan, np.inf], "b": [5.0, 1.0, 1.0]})
-    assert list(choosing.pareto(table, LESS).isna()) == [False, True, False]
-    assert list(choosing.pareto(table, LESS).dropna()) == ["yes", "yes"]
-    assert choosing.pareto(table, {"c": 1}).isna().all()
+    assert list(decisions.pareto(table, LESS).isna()) == [False, True, False]
+    assert list(decisions.pareto(table, LESS).dropna()) == ["yes", "yes"]
+    assert decisions.pareto(table, {"c": 1}).isna().all()
 
 
 def test_orders_are_compared_as_whole_numbers() -> None:
     table = pd.DataFrame({"order": [4.1, 3.9], "torque": [1.2, 1.1]})
-    assert list(choosing.pareto(table, {"torque": -1, "order": 1})) == ["no", "yes"]
+    assert list(decisions.pareto(table, {"torque": -1, "order": 1})) == ["no", "yes"]
 
 
 # -- decisions ----------------------------------------------------------------------------------
@@ -89,7 +89,7 @@ def test_every_clause_points_at_a_cell() -> None:
             "order": [4.0, np.nan, 4.0],
         }
     )
-    sentences = list(choosing.decisions(table))
+    sentences = list(decisions.decisions(table))
     local = sentences[0]
     quotes = [part for part in local if not isinstance(part, str)]
     assert [quote.source.column for quote in quotes] == ["scheme", "torque", "support"]
@@ -99,13 +99,13 @@ def test_every_clause_points_at_a_cell() -> None:
         ch.isdigit() for part in local if isinstance(part, str) for ch in part.replace("C2", "")
     )
     assert str(sentences[1][1]) == "a"
-    assert "`choosing.csv[scheme=b]`, `torque`, `support`" in next(choosing.lines(table))
+    assert "`choosing.csv[scheme=b]`, `torque`, `support`" in next(decisions.lines(table))
 
 
 def test_nothing_is_said_where_nothing_fits() -> None:
-    assert list(choosing.decisions(pd.DataFrame({"scheme": ["a"], "torque": [1.0]}))) == []
+    assert list(decisions.decisions(pd.DataFrame({"scheme": ["a"], "torque": [1.0]}))) == []
     unfit = {"scheme": ["a"], "torque": [np.nan], "passes_keys": ["yes"]}
-    assert list(choosing.decisions(pd.DataFrame(unfit))) == []
+    assert list(decisions.decisions(pd.DataFrame(unfit))) == []
 
 
 QUICK = pd.DataFrame(
@@ -125,7 +125,7 @@ QUICK = pd.DataFrame(
 
 def told(table: pd.DataFrame) -> dict[str, str]:
     """Sentences by how they begin."""
-    parts = ("".join(map(str, sentence)) for sentence in choosing.decisions(table))
+    parts = ("".join(map(str, sentence)) for sentence in decisions.decisions(table))
     return dict(text.split(": ", 1) for text in parts)
 
 
@@ -137,7 +137,7 @@ def test_quick_size_leaves_open_what_hangs_on_little() -> None:
     assert {wish.split()[0] for wish in open_ones} == {"Closed", "The", "C2"}
     fewest = next(wish for wish in quick if "fewest operations" in wish)
     assert quick[fewest].startswith("b ")
-    lines = list(choosing.lines(QUICK.assign(run_size="quick")))
+    lines = list(decisions.lines(QUICK.assign(run_size="quick")))
     assert sum("not decided at quick size. Cells: `choosing.csv[" in line for line in lines) == len(
         open_ones
     )
@@ -188,34 +188,43 @@ def test_an_empty_folder_is_told(module, tmp_path: Path) -> None:
         module.derive(Run(quick=True), reader(tmp_path))
 
 
-def test_counts_are_left_out_where_a_scheme_counts_other_things(module) -> None:
-    assert module._all_counted("quartic", "sample")
-    assert not module._all_counted("nlerp", "sample")  # square roots
-    assert not module._all_counted("min-torque", "keyframe")  # states none
-    assert not module._all_counted("no such scheme", "sample")
+def test_counts_are_left_out_where_a_scheme_counts_other_things(module, folder: Path) -> None:
+    names = ["quartic", "nlerp", "min-torque", "no such scheme"]
+    counts = {"exps": 1, "logs": 2, "slerps": 3, "seconds_median": 1.0, "size": 100}
+    rows = [
+        {"task": task, "scheme": name, **counts}
+        for name in names
+        for task in ("evaluation", "set-up")
+    ]
+    Results(folder, force=True).table("cost", pd.DataFrame(rows))
+    table = module.derive(Run(quick=True), reader(folder)).set_index("scheme")
+    table = table.loc[table["nanoseconds_per_sample"].notna()]  # none of what is no scheme
+    kept = table[["operations_sample", "operations_keyframe"]].notna()
+    assert kept["operations_sample"].to_dict() == {
+        "quartic": True,
+        "nlerp": False,  # square roots
+        "min-torque": True,
+    }
+    assert not kept.loc["min-torque", "operations_keyframe"]  # states none
 
 
-def test_the_worst_failure_is_the_gravest(module) -> None:
+def test_the_worst_failure_is_the_gravest(module, folder: Path) -> None:
     edges = pd.DataFrame(
-        {
-            "scheme": ["a", "a", "a", "b", "c"],
-            "case": ["x", "y", "z", "x", "x"],
-            "result": ["wrong", "wrong", "NaN", "wrong", "error"],
-            "relative": [0.5, 2.0, np.nan, 0.25, np.nan],
-            "failure": [
-                None,
-                None,
-                "velocity is not a number",
-                None,
-                "ValueError: no closed curve",
-            ],
-        }
+        [
+            ("slerp", "x", "wrong", 0.5, None),
+            ("slerp", "y", "wrong", 2.0, None),
+            ("slerp", "z", "NaN", np.nan, "velocity is not a number"),
+            ("quartic", "x", "wrong", 0.25, None),
+            ("local-quintic", "x", "error", np.nan, "ValueError: no closed curve"),
+        ],
+        columns=["scheme", "case", "result", "relative", "failure"],
     )
-    found = module._edge_cases(edges)
-    assert found["edges_NaN"].dropna().to_dict() == {"a": "NaN: z"}
-    off = {"a": "off by 2 of the step: y", "b": "off by 0.25 of the step: x"}
-    assert found["edges_wrong"].dropna().to_dict() == off
-    assert found["edges_error"].isna().all()  # a refusal is no failure
+    Results(folder, force=True).table("edge-cases", edges)
+    table = module.derive(Run(quick=True), reader(folder)).set_index("scheme")
+    assert table["worst_failure"].dropna().to_dict() == {
+        "slerp": "NaN: z; off by 2 of the step: y",
+        "quartic": "off by 0.25 of the step: x",  # a refusal is no failure
+    }
 
 
 def test_what_a_scheme_claims_is_no_failure(module, folder: Path) -> None:
@@ -240,15 +249,17 @@ def test_what_a_scheme_claims_is_no_failure(module, folder: Path) -> None:
     assert table.loc["local-quintic", "worst_failure"] == said
 
 
-def test_the_best_method_of_a_scheme_counts(module) -> None:
-    base = {"scheme": "a", "keyframes": 5, "unevenness": 1.0}
+def test_the_best_method_of_a_scheme_counts(module, folder: Path) -> None:
+    base = {"scheme": "quartic", "keyframes": 5, "unevenness": 1.0}
     rows = [
         {**base, "method": "m", "step_degrees": 60, "share_converged": 0.5},
         {**base, "method": "n", "step_degrees": 60, "share_converged": 1.0},
         {**base, "method": "n", "step_degrees": 170, "share_converged": 0.25},
     ]
-    told = module._convergence(pd.DataFrame(rows))["unsolved"]
-    assert told["a"] == "solves 25 %: 5 keyframes, 170 degrees, unevenness 1"
+    Results(folder).table("convergence", pd.DataFrame(rows))
+    table = module.derive(Run(quick=True), reader(folder)).set_index("scheme")
+    told = "solves 25 %: 5 keyframes, 170 degrees, unevenness 1"
+    assert table["worst_failure"].dropna().to_dict() == {"quartic": told}
 
 
 def test_run_writes_table_decisions_and_figure(folder: Path) -> None:
@@ -259,7 +270,7 @@ def test_run_writes_table_decisions_and_figure(folder: Path) -> None:
     before = (folder / "choosing.csv").read_bytes()
     assert running.run(["choosing"], out=folder) == []
     assert (folder / "choosing.csv").read_bytes() == before
-    said = [found for found in findings(reader(folder)) if found.topic == choosing.TABLE]
+    said = [found for found in findings(reader(folder)) if found.topic == decisions.TABLE]
     assert len(said) == text.count("- ") - text[: text.index("## Decisions")].count("- ")
 
 
@@ -269,10 +280,26 @@ def test_derived_experiments_come_last() -> None:
 
 
 def test_names_in_the_figure_keep_apart(module, folder: Path) -> None:
-    heights = module._spread(np.array([0.1, 0.1, 0.1, 0.99, 0.995]), 0.05)
-    assert np.diff(heights).min() >= 0.05 - 1e-12
-    assert heights[0] == pytest.approx(0.1)
+    """Five of nearly one height, three of them at the top, and one far below."""
+    names = ["slerp", "quartic", "local-quintic", "kim", "squad", "nielson"]
+    excess = [1e-3, 0.30, 0.31, 0.9, 0.99, 1.0]
+    fair = {"scheme": names, "median": 1.0 + np.array(excess), "worst": 3.0, "data": "committed"}
+    Results(folder, force=True).table("fairness", pd.DataFrame(fair))
+    cost = {"task": "evaluation", "scheme": names, "size": 100, "seconds_median": 1.0}
+    cost |= dict.fromkeys(("exps", "logs", "slerps"), 1)
+    Results(folder, force=True).table("cost", pd.DataFrame(cost))
+    table = module.derive(Run(quick=True), reader(folder))
+    with style.house():
+        axes = module.draw(table).axes[0]
+    heights = [text.xyann[1] for text in axes.texts]
+    assert [text.get_text() for text in axes.texts] == names
+    assert np.diff(heights).min() >= module.GAP - 1e-12
     assert heights[-1] <= 1.0
+    low, high = np.log(axes.get_ylim())
+    assert heights[0] == pytest.approx((np.log(excess[0]) - low) / (high - low))  # has room
+
+
+def test_schemes_of_infinite_energy_are_not_drawn(module, folder: Path) -> None:
     table = module.derive(Run(quick=True), reader(folder))
     with style.house():
         names = {text.get_text() for text in module.draw(table).axes[0].texts}

@@ -14,8 +14,10 @@ import quatspline as qs
 from quatspline import quaternion
 from quatspline.cli import commands
 from quatspline.comparing import COLUMNS
-from quatspline.findings import advice
+from quatspline.findings.candidates import CANDIDATES, rank
+from quatspline.findings.questions import Table
 from quatspline.findings.quotes import Quote
+from quatspline.findings.recommendation import recommendation
 from quatspline.instruments.rescue import unsolved
 from quatspline.keyframes import Keyframes
 from quatspline.motion.files import Motion, write
@@ -24,6 +26,16 @@ from quatspline.trajectories.edge_cases import edge_cases
 from walks import walk
 
 NAMES = ["quartic", "local-quintic", "squad", "slerp", "nielson", "min-torque"]
+
+
+def advice(table: pd.DataFrame) -> list[str]:
+    """The lines of the recommendation."""
+    return [finding.text for finding in recommendation(table)]
+
+
+def chosen_among(table: pd.DataFrame) -> list[str]:
+    """The candidates, the fairest first."""
+    return Table("compare", table, table).asked(CANDIDATES, rank).rows["scheme"].tolist()
 
 
 @pytest.fixture(scope="module")
@@ -73,7 +85,7 @@ def test_bad_input_is_refused() -> None:
 
 
 def test_every_number_of_the_recommendation_is_a_cell(table: pd.DataFrame) -> None:
-    found = advice.recommendation(table)
+    found = recommendation(table)
     assert found[0].text.startswith("Take local-quintic: ")
     quotes = [part for finding in found for part in finding.parts if isinstance(part, Quote)]
     assert quotes
@@ -89,10 +101,10 @@ def test_every_number_of_the_recommendation_is_a_cell(table: pd.DataFrame) -> No
 def test_stopping_at_keyframes_or_missing_them_is_not_recommended(table: pd.DataFrame) -> None:
     spoilt = table.copy()
     spoilt.loc[spoilt["scheme"] == "local-quintic", "key_speed"] = 0.0
-    assert "local-quintic" not in set(advice.candidates(spoilt)["scheme"])
+    assert "local-quintic" not in chosen_among(spoilt)
     spoilt = table.copy()
     spoilt.loc[spoilt["scheme"] == "local-quintic", "misses"] = 0.1
-    assert "local-quintic" not in set(advice.candidates(spoilt)["scheme"])
+    assert "local-quintic" not in chosen_among(spoilt)
 
 
 MISSES = {"jacobi": 0.3, "newton": np.inf}
@@ -171,7 +183,7 @@ def test_a_scheme_is_judged_and_not_its_iteration() -> None:
         row["note"],
     )
     assert pd.isna(table.loc["kim", "note"])
-    assert f"Of nielson: {row['note']}." in advice.lines(advice.recommendation(table.reset_index()))
+    assert f"Of nielson: {row['note']}." in advice(table.reset_index())
 
 
 @pytest.mark.parametrize(
@@ -202,7 +214,7 @@ def test_a_curve_that_turns_round_and_round_is_said_to() -> None:
     """A step of 74 degrees within a five-hundredth of a dwell: quartic turns 272 rad, not 1.29."""
     keyframes = [[1, 0, 0, 0], [1, 0, 0, 0], [0.8, 0.6, 0, 0], [0.8, 0.6, 0, 0]]
     table = qs.compare([0, 10, 10.02, 20], keyframes, ["quartic"])
-    lines = list(advice.lines(advice.recommendation(table)))
+    lines = advice(table)
     assert lines[1:] == ["It turns 272 rad where the keyframes need 1.29."]
 
 
@@ -212,7 +224,7 @@ def test_of_attitudes_with_dwells_between_the_curve_that_wanders_least_is_taken(
     keyframes = np.array(tilted)[[0, 0, 2, 2, 4]]
     names = ["kim", "local-quintic", "moving-frame", "quartic"]
     table = qs.compare([0, 240, 270, 510, 540], keyframes, names).set_index("scheme")
-    taken = advice.candidates(table.reset_index())["scheme"].tolist()
+    taken = chosen_among(table.reset_index())
     shortest = table["length"].min()
     assert table["torque"].idxmin() not in taken
     assert taken == [name for name in table.index if table.loc[name, "length"] <= 1.5 * shortest]
@@ -225,7 +237,7 @@ def test_rounding_of_curves_at_rest_is_not_compared() -> None:
     )
     assert (table[["torque", "jerk", "peak"]] == 0.0).all(axis=None)
     assert (table[["torque_over_least", "peak_over_least"]] == 1.0).all(axis=None)
-    assert not any("torque is" in line for line in advice.lines(advice.recommendation(table)))
+    assert not any("torque is" in line for line in advice(table))
 
 
 def test_times_of_a_clock_compare_as_times_from_zero() -> None:
@@ -244,7 +256,7 @@ def test_rounding_of_a_constant_rate_is_not_compared() -> None:
     assert (known.drop(index="quartic")["torque"] == 0.0).all()
     assert (known.drop(index="quartic")["continuity"] == 3).all()
     assert known.loc["quartic", "torque"] > 0.01  # the ends' rates differ from the spin's
-    assert "inf" not in "".join(advice.lines(advice.recommendation(table)))
+    assert "inf" not in "".join(advice(table))
 
 
 def test_a_leap_is_not_taken_for_rest() -> None:

@@ -16,9 +16,10 @@ import pytest
 import quatspline
 from desk import Desk, count, refused
 from processes import command, environment, python
+from quatspline.cli import running
 from quatspline.cli.grid import sample_times
 from quatspline.motion import files
-from quatspline.runs import experiment, running
+from quatspline.runs import experiment
 
 FAILING = 'self._conclude(SolveReport("jacobi", "residual", 9, 0.1, 0.2, False, 1e-6))'
 

@@ -11,12 +11,11 @@ import pytest
 
 from desk import Desk
 from quatspline import quaternion
-from quatspline.catalogue import load, scheme, shipped
+from quatspline.catalogue import load, scheme, schemes, shipped
 from quatspline.figures import motions, style
 from quatspline.findings.findings import findings, reader
 from quatspline.instruments.blending import blending
-from quatspline.runs import running
-from quatspline.runs.running import Run
+from quatspline.runs.experiment import Run, crossed, files
 from quatspline.timing.interleaved import interleaved
 from quatspline.timing.protocols import PROTOCOLS, frames
 from quatspline.trajectories.paper import CASES, KEY, SOLVE, TEAPOT
@@ -208,8 +207,19 @@ def test_findings_name_cells_that_exist():
             assert rows.iloc[0][cell.column] == cell.value
 
 
+def test_cells_cross_all_values():
+    run = Run(quick=True, schemes=["slerp", "nlerp"])
+    assert crossed(scheme=run.names, degrees=(10, 60)) == [
+        {"scheme": "slerp", "degrees": 10},
+        {"scheme": "slerp", "degrees": 60},
+        {"scheme": "nlerp", "degrees": 10},
+        {"scheme": "nlerp", "degrees": 60},
+    ]
+    assert set(schemes()) <= set(Run(quick=True).names)
+
+
 def test_docs_point_to_tables_that_experiments_make():
-    known = set(running.found())
+    known = set(files())
     for page in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]:
         named = re.findall(r"results/(\w[\w-]*)\.csv", page.read_text(encoding="utf-8"))
         assert set(named) <= known, page

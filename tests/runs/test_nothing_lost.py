@@ -12,8 +12,7 @@ from pathlib import Path
 import pytest
 
 import processes
-from quatspline import comparing
-from quatspline.cli import commands
+from quatspline.cli import commands, compare
 from quatspline.runs import experiment
 from quatspline.runs.results import Results
 from quatspline.system.atomic import ASIDE, naming
@@ -55,7 +54,7 @@ def refused(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch)
 
     def call(*arguments: str) -> str:
         with monkeypatch.context() as patch:
-            patch.setattr(comparing, "command", measured)
+            patch.setattr(compare, "command", measured)
             assert commands.main(arguments) == 2
         told = capsys.readouterr().err
         assert told.count("\n") == 1, told
@@ -93,7 +92,7 @@ def test_compare_replaces_foreign_files_by_force_only(
     assert sorted(os.listdir(out)) == ["notes.md", "rates.svg"]
     for force in (["--force"], []):  # and then they are its own
         assert commands.main([*command, *force]) == 0
-    written = {*comparing.FILES} & set(os.listdir(out))
+    written = {*compare.FILES} & set(os.listdir(out))
     assert set(json.loads((out / "manifest.json").read_text())["files"]) == written
     assert (out / "notes.md").read_text() == "precious"
     assert "precious" not in (out / "rates.svg").read_text()

@@ -220,7 +220,7 @@ def test_sweep_removes_what_an_earlier_run_left(results: Results) -> None:
     again = Results(results.folder)
     again.begin(["second"])
     again.table("a", table())
-    again.sweep("a")
+    again.tidy("a")
     left = ["a.csv", "a.md", "a.png", "ab.csv", "manifest.json"]
     assert sorted(os.listdir(results.folder)) == left
 

@@ -16,9 +16,10 @@ import pytest
 
 from processes import command, environment
 from quatspline import catalogue
-from quatspline.runs import experiment, running, sweeps
+from quatspline.cli import running
+from quatspline.runs import experiment, sweeps
+from quatspline.runs.experiment import Run
 from quatspline.runs.results import Results
-from quatspline.runs.running import Run
 from quatspline.runs.sweeps import Kept
 
 COUNT = 8

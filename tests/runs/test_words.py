@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from quatspline import comparing
-from quatspline.cli import commands, words
-from quatspline.runs import experiment, running
+from quatspline.cli import commands, running, words
+from quatspline.cli import compare as compare_command
+from quatspline.runs import experiment
 
 
 @pytest.fixture
@@ -26,7 +26,7 @@ def asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         seen.update(given, experiments=list(experiments))
         return []
 
-    monkeypatch.setattr(comparing, "command", compare)
+    monkeypatch.setattr(compare_command, "command", compare)
     monkeypatch.setattr(running, "run", run)
     monkeypatch.chdir(tmp_path)
     rows = ("0,1,0,0,0\n", "1,0.8,0.6,0,0\n", "2,1,0,0,0\n")
@@ -127,7 +127,7 @@ def test_run_without_schemes_leaves_the_choice_open(asked: dict[str, Any]) -> No
 def test_an_experiment_called_like_a_scheme_is_told(
     asked: dict[str, Any], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(experiment, "found", lambda: {"slerp": Path("slerp.py")})
+    monkeypatch.setattr(experiment, "files", lambda: {"slerp": Path("slerp.py")})
     assert commands.main(["run", "--schemes", "kim", "slerp"]) == 2
     assert "--schemes ... slerp: both a scheme and an experiment" in capsys.readouterr().err
     assert commands.main(["run", "slerp", "--schemes", "kim", "slerp"]) == 0

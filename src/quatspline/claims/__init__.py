@@ -1,0 +1,1 @@
+"""What schemes and publications claim, and the probes that measure it."""

@@ -25,6 +25,7 @@ class Probe:
         self._function, self._arguments, self._named = function, arguments, named
 
     def __call__(self) -> Value:
+        """The value measured."""
         return self._function(*self._arguments, **self._named)
 
     def __str__(self) -> str:

@@ -7,7 +7,7 @@ import numpy as np
 from quatspline import quaternion
 from quatspline.catalogue import scheme
 from quatspline.claims.probes import walked
-from quatspline.options import declared_by
+from quatspline.options import among
 from quatspline.quaternion import FloatArray
 from quatspline.timing.operations import executed
 from quatspline.timing.protocols import Protocol
@@ -86,8 +86,7 @@ def operations_over_quartic(
 def _operations(name: str, protocol: Protocol, case: str, frames: int) -> float:
     keyframes = CASES[case].keyframes()
     cls = scheme(name)
-    known = declared_by(cls)
-    curve = cls.from_keyframes(keyframes, **{k: v for k, v in SOLVE.items() if k in known})
+    curve = cls.from_keyframes(keyframes, **among(cls, SOLVE))
     counts = executed(curve, frames, frames if protocol == "per-frame" else 1).total
     return counts["exps"] + counts["logs"] + SLERP * counts["slerps"]
 

@@ -104,67 +104,35 @@ def _paper_splines() -> Iterator[Claim]:
 
 def _constructions() -> Iterator[Claim]:
     continuity = partial(Probe, probes.continuity)
-    yield Claim(
-        "nielson",
-        "paper",
-        "a cubic B-spline by nested slerps is not C2 [kim1995bspline]",
-        "below C2",
-        [continuity("nielson", count=n) for n in (3, 4)],
-        partial(_below, 1),
-    )
-    yield Claim(
-        "nielson",
-        "ours",
-        "power of the spacing that the acceleration's jump falls with",
-        3,
-        [Probe(probes.jump_order, "nielson", n) for n in (41, 81)],
-        lambda slope: abs(slope - 3.0) <= POWER,
-    )
-    reverse = partial(Probe, probes.reversal_deviation)
-    yield Claim(
-        "kim",
-        "paper",
-        "keyframes in reverse order give another curve [kim1996hermite]",
-        "another",
-        [reverse("kim", degrees=d) for d in (60, 120)],
-        partial(_above, SYMMETRIC),
-    )
-    yield Claim(
-        "squad",
-        "paper",
-        "C1 [shoemake1987]",
-        "at least C1",
-        [continuity("squad", count=n) for n in (3, 4, 6)],
-        partial(_above, 0),
-    )
+    said = "a cubic B-spline by nested slerps is not C2 [kim1995bspline]"
+    smooth = [continuity("nielson", count=n) for n in (3, 4)]
+    yield Claim("nielson", "paper", said, "below C2", smooth, partial(_below, 1))
+    said = "power of the spacing that the acceleration's jump falls with"
+    falling = [Probe(probes.jump_order, "nielson", n) for n in (41, 81)]
+    yield Claim("nielson", "ours", said, 3, falling, lambda slope: abs(slope - 3.0) <= POWER)
+    said = "keyframes in reverse order give another curve [kim1996hermite]"
+    reverse = [Probe(probes.reversal_deviation, "kim", degrees=d) for d in (60, 120)]
+    yield Claim("kim", "paper", said, "another", reverse, partial(_above, SYMMETRIC))
+    smooth = [continuity("squad", count=n) for n in (3, 4, 6)]
+    yield Claim("squad", "paper", "C1 [shoemake1987]", "at least C1", smooth, partial(_above, 0))
 
 
 # -- libraries ----------------------------------------------------------------------------------
 
 
 def _libraries() -> Iterator[Claim]:
-    yield Claim(
-        "interpolatepy-squad-c2",
-        "peer",
-        "at rest at the ends (and there alone)",
-        "moves at keyframes",
-        [Probe(probes.least_key_speed, "interpolatepy-squad-c2", count=n) for n in (3, 4)],
-        partial(_above, STILL),
-    )
-    flip: Callable[..., Probe] = partial(Probe, probes.moved_by_a_flip, "numpy-quaternion-squad")
-    claim = partial(Claim, "numpy-quaternion-squad", "peer")
-    yield claim(
-        "a keyframe of the other sign moves the curve (degrees)",
-        "moves",
-        [flip(count=n) for n in (3, 5)],
-        partial(_above, MOVED),
-    )
-    yield claim(
-        "unflip mends a keyframe of the other sign (degrees)",
-        "does not move",
-        [flip(count=n, unflip=True) for n in (3, 5)],
-        partial(_below, MENDED),
-    )
+    name = "interpolatepy-squad-c2"
+    said = "at rest at the ends (and there alone)"
+    speeds = [Probe(probes.least_key_speed, name, count=n) for n in (3, 4)]
+    yield Claim(name, "peer", said, "moves at keyframes", speeds, partial(_above, STILL))
+    name = "numpy-quaternion-squad"
+    flip: Callable[..., Probe] = partial(Probe, probes.moved_by_a_flip, name)
+    said = "a keyframe of the other sign moves the curve (degrees)"
+    given = [flip(count=n) for n in (3, 5)]
+    yield Claim(name, "peer", said, "moves", given, partial(_above, MOVED))
+    said = "unflip mends a keyframe of the other sign (degrees)"
+    mended = [flip(count=n, unflip=True) for n in (3, 5)]
+    yield Claim(name, "peer", said, "does not move", mended, partial(_below, MENDED))
 
 
 def _unread() -> Iterator[Claim]:

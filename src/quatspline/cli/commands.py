@@ -130,8 +130,7 @@ def _yes(claim: bool) -> str:
 
 
 def _run(arguments: argparse.Namespace) -> int:
-    from quatspline.cli import words
-    from quatspline.runs import running
+    from quatspline.cli import running, words
 
     experiments, schemes = words.of_run(arguments.experiments, arguments.schemes)
     failed = running.run(
@@ -149,8 +148,7 @@ def _run(arguments: argparse.Namespace) -> int:
 
 
 def _compare(arguments: argparse.Namespace) -> int:
-    from quatspline import comparing
-    from quatspline.cli import words
+    from quatspline.cli import compare, words
     from quatspline.runs.results import Results
 
     # A wrong name is told before a long file is read.
@@ -159,8 +157,8 @@ def _compare(arguments: argparse.Namespace) -> int:
     out = arguments.out or Path(f"{Path(arguments.keyframes).stem}-compared")
     results = Results(out, force=arguments.force)
     with results.writing():
-        results.guard(comparing.FILES, inputs=[arguments.keyframes])
-        return comparing.command(
+        results.guard(compare.FILES, inputs=[arguments.keyframes])
+        return compare.command(
             motion,
             schemes=schemes,
             closed=arguments.closed,

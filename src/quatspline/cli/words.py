@@ -59,7 +59,7 @@ def of_run(experiments: Sequence[str], groups: Groups | None) -> tuple[list[str]
         return list(experiments), None
     from quatspline.runs import experiment
 
-    known = {} if experiments else experiment.found()
+    known = {} if experiments else experiment.files()
     schemes, more = apart(groups, known.__contains__, "an experiment")
     return [*experiments, *more], usable(schemes)
 

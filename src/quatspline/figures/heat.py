@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import matplotlib as mpl
@@ -47,9 +48,15 @@ def label_cells(ax: Any, texts: pd.DataFrame, dark: pd.DataFrame) -> None:
             ax.text(j, i, text, ha="center", va="center", fontsize=5.5, color=colour)
 
 
+def scheme_rows(ax: Any, names: Sequence[str], *, shown: bool = True) -> None:
+    """A row of height 1 a name, the first on top."""
+    ax.set_yticks(range(len(names)), list(names) if shown else [])
+    ax.set_ylim(len(names) - 0.5, -0.5)
+
+
 def _label(ax: Any, frame: pd.DataFrame, names_shown: bool) -> None:
     ax.set_xticks(range(frame.shape[1]), [str(column) for column in frame.columns])
-    ax.set_yticks(range(len(frame)), list(frame.index) if names_shown else [])
+    scheme_rows(ax, list(map(str, frame.index)), shown=names_shown)
     ax.tick_params(length=0)
     ax.grid(visible=False)
     for i in range(1, len(frame)):

@@ -25,13 +25,14 @@ def draw_log_curves(
 ) -> None:
     """Draw curves ln q(t) in R³ with their keyframes, lengths true in every direction.
 
-    Args:
-        ax: an empty 3-D axes.
-        curves: points (m, 3) of ln q (half rotation vectors, radians), colour and label of each.
-        keyframes: (n, 3) logarithms of the keyframes.
-        elev: the camera's elevation, in degrees.
-        azim: the camera's azimuth, in degrees.
-        linewidth: of the curves, in points.
+    Parameters
+    ----------
+    ax : an empty 3-D axes.
+    curves : points (m, 3) of ln q (half rotation vectors, radians), colour and label of each.
+    keyframes : (n, 3) logarithms of the keyframes.
+    elev : the camera's elevation, in degrees.
+    azim : the camera's azimuth, in degrees.
+    linewidth : of the curves, in points.
     """
     lines = [np.asarray(points, dtype=np.float64) for points, _, _ in curves]
     keys = np.asarray(keyframes, dtype=np.float64)

@@ -49,13 +49,14 @@ _TEAPOT_TINT, _TEAPOT_LIFT = (1.0, 1.0, 1.0, 1.0, 0.45), (0.0, 0.02, 0.03, 0.0, 
 class Mesh:
     """A surface of quadrilateral cells, flat or nearly so, some of them shrunk to triangles.
 
-    Attributes:
-        vertices: (v, 3) positions, in the body's own frame and unit.
-        cells: (c, 4) vertex indices, anticlockwise as seen from outside.
-        part: (c,) the part of the body that a cell belongs to (an index: 0, 1, …).
-        tint: (c,) brightness of a cell's colour, 1 but for what lies in the dark.
-        lift: (c,) how much nearer to the camera a cell counts when cells are sorted by depth, in
-            the body's unit: a part that grows out of another wins where the two meet.
+    Attributes
+    ----------
+    vertices : (v, 3) positions, in the body's own frame and unit.
+    cells : (c, 4) vertex indices, anticlockwise as seen from outside.
+    part : (c,) the part of the body that a cell belongs to (an index: 0, 1, …).
+    tint : (c,) brightness of a cell's colour, 1 but for what lies in the dark.
+    lift : (c,) how much nearer to the camera a cell counts when cells are sorted by depth, in
+        the body's unit: a part that grows out of another wins where the two meet.
     """
 
     vertices: FloatArray

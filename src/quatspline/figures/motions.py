@@ -15,7 +15,7 @@ from quatspline.figures import style
 from quatspline.figures.log_axes import draw_log_curves
 from quatspline.figures.meshes import Mesh, key_mesh, teapot_mesh
 from quatspline.figures.scenes import BRASS, PORCELAIN, draw_frames
-from quatspline.options import declared_by
+from quatspline.options import among
 from quatspline.quaternion import FloatArray
 from quatspline.trajectories.paper import RECONSTRUCTED, SOLVE, PaperCase
 
@@ -61,9 +61,8 @@ def motion_table(case: PaperCase, schemes: tuple[str, ...]) -> pd.DataFrame:
     """
     rows = []
     for name in schemes:
-        known = declared_by(scheme(name))
-        options = {option: value for option, value in SOLVE.items() if option in known}
-        curve = scheme(name).from_keyframes(case.keyframes(), **options)
+        cls = scheme(name)
+        curve = cls.from_keyframes(case.keyframes(), **among(cls, SOLVE))
         dense = np.linspace(*curve.domain, LOG_SAMPLES)
         grids = {"frames": case.frames(case.rows[0].frames), "log": dense}
         if name == schemes[0]:

@@ -55,10 +55,11 @@ def view_axes(elev: float, azim: float) -> FloatArray:
 def shade(normals: FloatArray, rgb: FloatArray, view: FloatArray) -> FloatArray:
     """Return face colours (f, 3): Lambert's law with ambient light and a Blinn highlight.
 
-    Args:
-        normals: (f, 3) unit normals.
-        rgb: (f, 3) or (3,) the body's own colour, 0 to 1.
-        view: the rows of `view_axes`.
+    Parameters
+    ----------
+    normals : (f, 3) unit normals.
+    rgb : (f, 3) or (3,) the body's own colour, 0 to 1.
+    view : the rows of `view_axes`.
     """
     light = _LIGHT / np.linalg.norm(_LIGHT) @ view
     half = (light + view[2]) / np.linalg.norm(light + view[2])
@@ -91,22 +92,25 @@ def draw_frames(
     All frames and the path are one collection, sorted by depth and drawn as an image inside
     vector figures. The axes' grid, panes and ticks are removed.
 
-    Args:
-        ax: an empty 3-D axes; its whole panel is used, whatever the panel's shape.
-        mesh: the body; its surface must hide its inside (faces turned away are not drawn).
-        positions: (m, 3) where the body's origin is, in scene units.
-        quaternions: (m, 4) unit quaternions, scalar first, body to scene.
-        color: one colour, or one for each frame.
-        scale: scene units to one mesh unit.
-        path: (k, 3) points of the curve that the origin follows, in scene units.
-        path_color: its colour.
-        ground: height z of a plane that receives the frames' shadows (light from straight above).
-        elev: the camera's elevation, in degrees.
-        azim: the camera's azimuth, in degrees.
-        margin: free border on each side, as a fraction of the panel.
+    Parameters
+    ----------
+    ax : an empty 3-D axes; its whole panel is used, whatever the panel's shape.
+    mesh : the body; its surface must hide its inside (faces turned away are not drawn).
+    positions : (m, 3) where the body's origin is, in scene units.
+    quaternions : (m, 4) unit quaternions, scalar first, body to scene.
+    color : one colour, or one for each frame.
+    scale : scene units to one mesh unit.
+    path : (k, 3) points of the curve that the origin follows, in scene units.
+    path_color : its colour.
+    ground : height z of a plane that receives the frames' shadows (light from straight above).
+    elev : the camera's elevation, in degrees.
+    azim : the camera's azimuth, in degrees.
+    margin : free border on each side, as a fraction of the panel.
 
-    Raises:
-        ValueError: if positions, quaternions and colours do not match in number.
+    Raises
+    ------
+    ValueError
+        If positions, quaternions and colours do not match in number.
     """
     view = view_axes(elev, azim)
     turn, place = _poses(positions, quaternions)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
-from quatspline.findings import choosing
+from quatspline.findings import decisions
 from quatspline.findings.quotes import Cell, Ledger, Part, Quote, Reader, Span, said
 
 
@@ -49,9 +49,8 @@ def findings(read: Reader) -> list[Finding]:
 
 def _decisions(read: Reader) -> list[Finding]:
     try:
-        return [
-            Finding(choosing.TABLE, parts) for parts in choosing.decisions(read(choosing.TABLE))
-        ]
+        table = read(decisions.TABLE)
+        return [Finding(decisions.TABLE, parts) for parts in decisions.decisions(table)]
     except (FileNotFoundError, LookupError):
         return []
 
@@ -196,7 +195,6 @@ def _numbered(cells: Sequence[Cell]) -> dict[str, Cell]:
     return {f"v{i}": cell for i, cell in enumerate(cells)}
 
 
-def lines(folder: Path) -> Iterator[str]:
-    """The findings of a folder of tables as a Markdown list."""
-    for finding in findings(reader(folder)):
-        yield f"- {finding.text}"
+def lines(found: Iterable[Finding]) -> Iterator[str]:
+    """Findings as a Markdown list."""
+    return (f"- {finding.text}" for finding in found)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from string import Formatter
 from typing import Any
@@ -100,12 +100,20 @@ Part = str | Quote
 
 def said(template: str, **quantities: Cell | Quote | Span) -> tuple[Part, ...]:
     """The parts of a sentence; the template names quantities as `str.format` does: ``{steps:d}``."""
+    return filled(template, lambda name, spec: _written(quantities[name], spec))
+
+
+def filled(template: str, field: Callable[[str, str], Iterable[Part]]) -> tuple[Part, ...]:
+    """The parts of a sentence, those of a field by its name and format specification."""
     parts: list[Part] = []
     for text, name, spec, _ in Formatter().parse(template):
-        parts.append(text)
-        if name is not None:
-            parts += _written(quantities[name], spec or "")
+        parts += [text, *(field(name, spec or "") if name is not None else ())]
     return tuple(part for part in parts if part != "")
+
+
+def fields(template: str) -> list[str]:
+    """The names in a template."""
+    return [name for _, name, *_ in Formatter().parse(template) if name]
 
 
 def _written(quantity: Cell | Quote | Span, spec: str) -> list[Part]:
@@ -133,10 +141,6 @@ class Ledger:
     def values(self, table: str, column: str, **row: Any) -> list[Any]:
         """What a column holds in the rows that match, sorted, each value once."""
         return sorted(self._matching(table, row)[column].dropna().unique().tolist())
-
-    def columns(self, table: str) -> list[str]:
-        """Names of a table's columns."""
-        return [str(name) for name in self._read(table)]
 
     def _matching(self, table: str, row: Mapping[str, Any]) -> pd.DataFrame:
         picked = self._read(table)

@@ -38,9 +38,9 @@ class Target:
 
     text: str
     bound: float
-    at_least: bool
-    unit: str
     value: Callable[[Ledger], float]
+    at_least: bool = False
+    unit: str = "x"
 
 
 @dataclass(frozen=True)
@@ -98,30 +98,25 @@ def _orders(cell: Ledger) -> float:
 
 def _ahead(*peers: str, scheme: str) -> Target:
     text = f"`{scheme}` over the fastest of {', '.join(f'`{p}`' for p in peers)}, a sample"
-    return Target(text, 20.0, True, "x", _faster("evaluate", scheme, *peers))
+    return Target(text, 20.0, _faster("evaluate", scheme, *peers), at_least=True)
 
 
 TARGETS: tuple[Target, ...] = (
     Target(
         "`quartic`, a million sorted samples, over `out.fill` on the same output",
         6.0,
-        False,
-        "x",
         lambda cell: _times_fill(cell, "evaluate", "quartic"),
     ),
     Target(
         f"the same over `{ROTATION_SPLINE}`",
         50.0,
-        True,
-        "x",
         _faster("evaluate", "quartic", ROTATION_SPLINE),
+        at_least=True,
     ),
-    Target("orders 0, 1 and 2 of `quartic` over order 0 alone", 3.5, False, "x", _orders),
+    Target("orders 0, 1 and 2 of `quartic` over order 0 alone", 3.5, _orders),
     Target(
         "`local-quintic` over `quartic`, time a sample",
         1.0,
-        False,
-        "x",
         lambda cell: _each(cell, "evaluate", "local-quintic") / _each(cell, "evaluate", "quartic"),
     ),
     _ahead("scipy-slerp", "rowan-slerp", "pytransform3d-slerp", scheme="slerp"),
@@ -132,37 +127,32 @@ TARGETS: tuple[Target, ...] = (
     Target(
         "set-up of `quartic` on 1000 keyframes",
         100.0,
-        False,
-        "us",
         lambda cell: 1e6 * _seconds(cell, "set-up", "quartic"),
+        unit="us",
     ),
     Target(
         f"set-up of `kim` to 1e-9 over `{ROTATION_SPLINE}`",
         10.0,
-        True,
-        "x",
         _faster("set-up", "kim", ROTATION_SPLINE),
+        at_least=True,
     ),
     Target(
         "one sample of `quartic`",
         5.0,
-        False,
-        "us",
         lambda cell: 1e6 * _seconds(cell, "one sample", "quartic"),
+        unit="us",
     ),
     Target(
         f"the same over `{ROTATION_SPLINE}`",
         20.0,
-        True,
-        "x",
         _faster("one sample", "quartic", ROTATION_SPLINE),
+        at_least=True,
     ),
     Target(
         "`import quatspline` after `import numpy`",
         0.1,
-        False,
-        "s",
         lambda cell: _seconds(cell, "start", "import quatspline"),
+        unit="s",
     ),
 )
 

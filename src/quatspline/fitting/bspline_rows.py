@@ -61,7 +61,8 @@ def put_far_jets(jets, m, p, j, size):
 @compiled
 def set_jets(m, p, w, jets):
     """The jets (s, c, b) of m_k w_k, p_k w_{k+1} and w_{k+1} for every knot k, in rows BEFORE,
-    AFTER and WHOLE; loops of few constants and no branch, which vectorise."""
+    AFTER and WHOLE; loops of few constants and no branch, which vectorise.
+    """
     n = m.size
     size = np.empty(n + 1)
     for j in range(n + 1):

@@ -1,0 +1,1 @@
+"""What users hand over, taken as arrays or refused in one sentence."""

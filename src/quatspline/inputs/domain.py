@@ -50,8 +50,10 @@ class Domain:
         return float_array("t", since), self._slack if exact else self._slack_of(given.dtype)
 
     def wrap(self, t: FloatArray, slack: float) -> tuple[FloatArray, Any, Any]:
-        """Times since the first keyframe within the domain (m,), where an odd number of periods was
-        taken off, and which are bad."""
+        """Times since the first keyframe (m,), brought into the domain.
+
+        Also where an odd number of periods was taken off for it, and which are bad.
+        """
         if self.closed:
             bad = ~np.isfinite(t)
             periods = np.floor(np.where(bad, 0.0, t) / self.period)

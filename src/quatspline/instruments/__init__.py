@@ -1,0 +1,1 @@
+"""What measures a curve: a curve goes in, rows come out."""

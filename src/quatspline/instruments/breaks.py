@@ -41,8 +41,11 @@ LEAP = 1e-6
 
 
 class Breaks(NamedTuple):
-    """The largest of a curve: ``leap`` of the orientation (rad), ``corner`` of the velocity (rad/t), and the
-    latter ``scaled`` by the spacing of its segment's keyframes (rad); 0 where there is none."""
+    """The largest breaks of a curve, 0 where there is none.
+
+    ``leap`` of the orientation (rad), ``corner`` of the velocity (rad/t), and the latter ``scaled`` by the
+    spacing of its segment's keyframes (rad).
+    """
 
     leap: float
     corner: float
@@ -92,8 +95,10 @@ def _wide(curve: Curve, nodes: FloatArray) -> FloatArray:
 
 
 def _halved(curve: Curve, nodes: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Windows (levels, w, 3) and orientations (levels, w, 3, 4), each level half as wide as the one before;
-    NaN where a window would be too narrow."""
+    """Windows (levels, w, 3) and orientations (levels, w, 3, 4), each level half as wide as the one before.
+
+    NaN where a window would be too narrow.
+    """
     every = [(nodes, q)]
     left = np.flatnonzero(_wide(curve, nodes))
     while left.size:

@@ -21,7 +21,7 @@ from quatspline.trajectories.edge_cases import EdgeCase
 
 BoolArray = NDArray[np.bool_]
 
-EXACT = 1e-6
+NEGLIGIBLE = 1e-6
 """Errors below this share of the case's largest step are none: solvers stop at 1e-11 rad, and at half a
 turn rounding is magnified; what is wrong is so by decades more."""
 
@@ -65,8 +65,10 @@ CHECKED = {"everywhere": "truth", "interior": "truth inside", "no": "keys"}
 
 
 def _claim(case: EdgeCase, curve: Curve | type[Curve]) -> str:
-    """The claim of a constant rate, as far as the case tries it: a curve at rest has to stay, one that closes
-    has no ends."""
+    """The claim of a constant rate, as far as the case tries it.
+
+    A curve at rest has to stay, one that closes has no ends.
+    """
     if not _moves(case) or (case.closed and curve.constant_rate == "interior"):
         return "everywhere"
     return curve.constant_rate
@@ -80,9 +82,9 @@ def _judged(case: EdgeCase, curve: Curve) -> Row:
         return {"result": "NaN" if "not a number" in bad else "wrong", "failure": bad}
     off, claimed = _deviations(case, curve, t, q)
     step = _step(case.keyframes)
-    faults = off[(off > EXACT * step) & (claimed | (off > ASTRAY * step))]
+    faults = off[(off > NEGLIGIBLE * step) & (claimed | (off > ASTRAY * step))]
     deviation = float(faults.max() if faults.size else off.max())
-    result = "wrong" if faults.size else "exact" if deviation <= EXACT * step else "as claimed"
+    result = "wrong" if faults.size else "exact" if deviation <= NEGLIGIBLE * step else "as claimed"
     return {"result": result, "deviation": deviation, "relative": deviation / step}
 
 

@@ -44,8 +44,10 @@ GRID, ZOOMS = 5, 7
 
 
 class _Panels(NamedTuple):
-    """Pieces of segments, not across a keyframe: time since the first keyframe at their left ends (p,),
-    widths (p,), spacings of their keyframes (p,)."""
+    """Pieces of segments, not across a keyframe.
+
+    Times since the first keyframe at their left ends (p,), widths (p,), spacings of their keyframes (p,).
+    """
 
     left: FloatArray
     width: FloatArray

@@ -42,8 +42,11 @@ def _same(x: FloatArray) -> FloatArray:
 
 
 class Change(NamedTuple):
-    """Changed keyframes, the time at which their curve is where the first is at t, and the turn that
-    the orientations should have made."""
+    """Changed keyframes, and what should follow.
+
+    The time at which their curve is where the first is at t, and the turn that the orientations should
+    have made.
+    """
 
     times: FloatArray
     keyframes: FloatArray

@@ -48,14 +48,18 @@ def facts(curve: Curve) -> Row:
     return {"rates": rates, "version": version(curve.name)}
 
 
-def attempted(measure: Callable[[], list[Row]]) -> list[Row]:
-    """The rows measured; for what does not apply or fails, one row with its reason."""
+def attempted(measure: Callable[[], list[Row]], **given: Any) -> list[Row]:
+    """The rows measured, after what is given of each.
+
+    For what does not apply or fails, one row with its reason.
+    """
     try:
-        return measure()
+        rows = measure()
     except Exception as error:  # whatever a scheme raises is a result
-        return [{"failure": reason(error)}]
+        rows = [{"failure": reason(error)}]
+    return [given | row for row in rows]
 
 
-def reason(error: Exception) -> str:
+def reason(error: BaseException) -> str:
     """What a scheme raised, on one line."""
     return f"{type(error).__name__}: {' '.join(str(error).split())}"

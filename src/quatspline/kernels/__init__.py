@@ -1,0 +1,1 @@
+"""Compilation, quaternions as values, and the driver that evaluates segments."""

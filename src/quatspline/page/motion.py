@@ -13,6 +13,7 @@ from quatspline.catalogue import found
 from quatspline.curve import Curve
 from quatspline.figures.meshes import Mesh, key_mesh, teapot_mesh
 from quatspline.figures.motions import VIEWS
+from quatspline.instruments.trials import reason
 from quatspline.keyframes import Keyframes
 from quatspline.quaternion import FloatArray
 from quatspline.trajectories.paper import CASES
@@ -148,7 +149,7 @@ def _curves(scene: Scene) -> tuple[dict[str, Any], dict[str, str]]:
                 raise ValueError(items[name].problem)
             curves[name] = _samples(cls.from_keyframes(scene.keyframes), times)
         except Exception as error:  # one that does not apply here; the others are shown
-            refused[name] = " ".join(f"{type(error).__name__}: {error}".split())
+            refused[name] = reason(error)
     return curves, refused
 
 

@@ -1,0 +1,1 @@
+"""What the wrappers of one third-party library share."""

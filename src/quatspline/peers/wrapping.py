@@ -70,8 +70,10 @@ class PeerCurve(Curve):
     orders: tuple[int, ...] = (0,)
 
     def _published(self, t: FloatArray, order: int) -> FloatArray | None:
-        """Body rates (m, 3) that the library publishes and its wrapper does not offer, being others
-        than the curve's; None without any.  Instruments report how far off they are."""
+        """Body rates (m, 3) that the library publishes and its wrapper does not offer; None without any.
+
+        They are others than the curve's.  Instruments report how far off they are.
+        """
         return None
 
     def _build(self, keyframes: Keyframes, given: dict[str, Any]) -> None:

@@ -1,0 +1,1 @@
+"""The paper's quartic, and what this project adds."""

@@ -1,0 +1,1 @@
+"""Experiments, their cells, the journal, and the folder of results."""

@@ -26,11 +26,13 @@ import sys
 import traceback
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Literal, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 
 from quatspline import catalogue
+from quatspline.instruments.trials import reason
 from quatspline.options import nearest
 from quatspline.runs.provenance import cpu_model, versions
 
@@ -70,8 +72,13 @@ class Run:
 
     @property
     def size(self) -> Size:
-        """ "quick" or "full"."""
+        """The name of the size: "quick" or "full"."""
         return QUICK if self.quick else FULL
+
+    @property
+    def names(self) -> list[str]:
+        """The schemes asked for; all that are found, the unusable too, where none are."""
+        return self.schemes or list(catalogue.found())
 
     def rng(self, *names: object) -> np.random.Generator:
         """A generator seeded by the run's seed and by names, whatever else was drawn before."""
@@ -91,6 +98,11 @@ class Run:
             iterable, label, total, leave=False, delay=PATIENCE, mininterval=often, file=sys.stderr
         )
         return iter(bar)
+
+
+def crossed(**axes: Iterable[Any]) -> list[dict[str, Any]]:
+    """Cells of every combination of values, those of the last name changing fastest."""
+    return [dict(zip(axes, values, strict=True)) for values in product(*axes.values())]
 
 
 @dataclass(frozen=True)
@@ -129,17 +141,17 @@ class Experiment:
         return str(getattr(self.module, "TITLE", self.name))
 
 
-def found() -> dict[str, Path]:
+def files() -> dict[str, Path]:
     """The files of all experiments by name."""
     extra = [Path(p) for p in os.environ.get(FOLDERS, "").split(os.pathsep) if p]
-    files: dict[str, Path] = {}
+    named: dict[str, Path] = {}
     for folder in (catalogue.shipped("experiments"), *extra):
         for path in sorted(folder.glob("[!_]*.py")):
             name = path.stem.replace("_", "-")
-            if name in files:
-                raise ValueError(f"two experiments are called {name!r}: {files[name]} and {path}")
-            files[name] = path
-    return dict(sorted(files.items()))
+            if name in named:
+                raise ValueError(f"two experiments are called {name!r}: {named[name]} and {path}")
+            named[name] = path
+    return dict(sorted(named.items()))
 
 
 def experiments(names: Sequence[str] = ()) -> list[Experiment]:
@@ -150,16 +162,16 @@ def experiments(names: Sequence[str] = ()) -> list[Experiment]:
     ValueError
         An unknown name (with the nearest known one), or none there at all.
     """
-    files = found()
+    known = files()
     for name in names:
-        if name not in files:
-            raise ValueError(f"unknown experiment {name!r}: {nearest(name, files)}")
-    if not files:
+        if name not in known:
+            raise ValueError(f"unknown experiment {name!r}: {nearest(name, known)}")
+    if not known:
         raise ValueError(f"no experiments in {catalogue.shipped('experiments')} or ${FOLDERS}")
     if names:
-        asked = [_loaded(name, files[name]) for name in dict.fromkeys(names)]
+        asked = [_loaded(name, known[name]) for name in dict.fromkeys(names)]
         return sorted(asked, key=lambda e: e.derived)
-    loaded = [_loaded(*item) for item in files.items()]
+    loaded = [_loaded(*item) for item in known.items()]
     return sorted(loaded, key=lambda e: (e.derived, not e.paper, e.name))
 
 
@@ -179,18 +191,18 @@ def fingerprint(runs: dict[str, Run]) -> str:
 
 def sources() -> str:
     """A hash of the package's files, of all schemes and of all experiments."""
-    files = {path for path in catalogue.PACKAGE.rglob("*") if "__pycache__" not in path.parts}
-    files |= {path for folder in catalogue.folders() for path in folder.glob("*.py")}
-    folders = {path.parent for path in found().values()}  # experiments may share private modules
-    files |= {path for folder in folders for path in folder.glob("*.py")}
+    paths = {path for path in catalogue.PACKAGE.rglob("*") if "__pycache__" not in path.parts}
+    paths |= {path for folder in catalogue.folders() for path in folder.glob("*.py")}
+    folders = {path.parent for path in files().values()}  # experiments may share private modules
+    paths |= {path for folder in folders for path in folder.glob("*.py")}
     digest = hashlib.sha256()
-    for path in sorted({path.resolve() for path in files if path.is_file()}):
+    for path in sorted({path.resolve() for path in paths if path.is_file()}):
         digest.update(path.name.encode() + path.read_bytes())
     return digest.hexdigest()
 
 
-def reason(error: BaseException) -> str:
-    """One line: the kind, the message, and where it was raised."""
+def traced(error: BaseException) -> str:
+    """The reason on one line, and where it was raised."""
     last = traceback.extract_tb(error.__traceback__)[-1:]
     where = f" ({Path(last[0].filename).name}:{last[0].lineno})" if last else ""
-    return f"{type(error).__name__}: {' '.join(str(error).split())}{where}"
+    return f"{reason(error)}{where}"

@@ -89,7 +89,7 @@ class Results(Store):
         own = [f"{name}{end}" for end in OUTPUTS if self.owns(f"{name}{end}")]
         return {file: sha256(self.folder / file) for file in own}
 
-    def sweep(self, name: str) -> None:
+    def tidy(self, name: str) -> None:
         """Remove outputs of an experiment that this run did not write: those of an earlier one."""
         stale = {*self.outputs(name)}
         if self.force:  # what a run that fails writes there, one that does not takes away

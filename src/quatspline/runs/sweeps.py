@@ -114,7 +114,7 @@ def _alone(shared: tuple[Any, ...], place: int, cell: Cell) -> Done:
         (done,) = _dispatched(shared, {place: cell}, set())
         return done
     except TerminatedWorkerError as error:
-        return Done(place, "", f"a worker died, this cell alone on it: {experiment.reason(error)}")
+        return Done(place, "", f"a worker died, this cell alone on it: {experiment.traced(error)}")
 
 
 def _dispatched(shared: tuple[Any, ...], cells: dict[int, Cell], begun: set[int]) -> Iterator[Done]:
@@ -217,12 +217,12 @@ def _lacking(usable: Sequence[str], run: Run, cell: Cell) -> str | None:
 def _measured(place: int, name: str, run: Run, cell: Cell) -> Done:
     """Measure a cell of an experiment that is found by its name (modules do not travel)."""
     try:
-        module = catalogue.load(experiment.found()[name], "experiment")
+        module = catalogue.load(experiment.files()[name], "experiment")
         rows = module.measure_cell(run, **cell)
         listed = [rows] if isinstance(rows, dict) else list(rows)
         return Done(place, json.dumps(listed, default=_plain))
     except Exception as error:  # told once the other cells are kept
-        return Done(place, "", experiment.reason(error))
+        return Done(place, "", experiment.traced(error))
 
 
 def _plain(value: Any) -> Any:

@@ -38,6 +38,7 @@ def _keyframes() -> quaternion.FloatArray:
 
 
 def main() -> None:
+    """Compile what every scheme of this package needs, side by side."""
     start = time.perf_counter()
     names = compiled_schemes()
     warm_up("slerp")  # what all schemes share, before processes part

@@ -1,0 +1,1 @@
+"""What an operating system and an interpreter ask for: whole files, locks, imports, forks."""

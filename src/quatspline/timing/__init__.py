@@ -1,0 +1,1 @@
+"""What a scheme costs: interleaved seconds, forecasts, counted operations."""

@@ -1,39 +1,50 @@
 """What a call costs: seconds within a budget, memory, and operations that no machine changes.
 
-A task is a function of a size that prepares a call.  Before a call of some size is made it is made at
-sizes ten times smaller, smallest first, so that one that would take too long is known before it
-starts: its cost is said to be over budget instead of waited for.
+Before a call of some size is made it is made at sizes ten times smaller, smallest first, so that one that
+would take too long is known before it starts: its cost is said to be over budget instead of waited for.
 """
 
 from __future__ import annotations
 
 import ctypes
 import math
-import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from quatspline.curve import Curve
 from quatspline.instruments.trials import reason
 from quatspline.kernels.operations import UNSTATED
-from quatspline.timing.interleaved import Contender, OverBudget, interleaved, repeated
+from quatspline.timing.budget import OVER, Budget, Call, Job, rungs
+from quatspline.timing.interleaved import timed
 from quatspline.timing.operations import OPERATIONS, per_keyframe, per_sample
-
-Call = Callable[[], object]
-Task = Callable[[int], Call]
-
-FACTOR = 10
-"""Between the rungs of a ladder of sizes."""
 
 SLOW = 0.05
 """Calls that take this share of the budget are timed once: rounds of them would exceed it."""
 
+SPREAD = 1000
+"""Segments between samples in a set-up: fewer than are fitted at once, so that every segment is fitted."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """A call that can be made at any size; ``linear``: its cost and its preparation's grow with the size."""
+
+    prepare: Job
+    linear: bool = True
+
 
 @dataclass(frozen=True)
 class Cost:
-    """Seconds of a call: median and interquartile range over rounds (NaN for a single one), or why
-    there are none."""
+    """Seconds of a call, or why there are none.
+
+    Median and interquartile range over rounds (NaN for a single one).
+    """
 
     seconds: float = math.nan
     iqr: float = math.nan
@@ -41,12 +52,24 @@ class Cost:
     failure: str | None = None
 
 
+def fitted_whole(make: Callable[[], Curve], times: NDArray[Any]) -> Call:
+    """The call that makes a curve through keyframes at times (n,), all of it.
+
+    Where there are many it takes samples, too: a long curve of a local scheme is fitted only where it is
+    called, and its constructor alone times nothing.
+    """
+    if len(times) <= SPREAD:
+        return make
+    at = np.linspace(times[0], times[-1], 1 + -(-len(times) // SPREAD))
+    return lambda: make()(at)
+
+
 def costs(
     tasks: Mapping[str, Task],
     size: int,
     *,
     least: int = 1,
-    budget: float,
+    budget: Budget,
     rounds: int,
     duration: float,
     seed: int = 0,
@@ -56,68 +79,39 @@ def costs(
     Fast ones are interleaved over rounds, measurements of about ``duration`` seconds; slow ones are
     timed once.  ``least`` is the smallest size that a task accepts.
     """
-    found: dict[str, Cost] = {}
-    fast: dict[str, Contender] = {}
+    failures: dict[str, str] = {}
+    calls = _affordable(tasks, size, least, budget, failures)
+    timings = timed(calls, slow=SLOW * budget.limit, rounds=rounds, least=duration, seed=seed)
+    found = {name: Cost(failure=failure) for name, failure in failures.items()}
+    return found | {name: Cost(t.median, t.iqr, t.rounds) for name, t in timings.items()}
+
+
+def _affordable(
+    tasks: Mapping[str, Task], size: int, least: int, budget: Budget, failures: dict[str, str]
+) -> Iterator[tuple[str, Call]]:
+    """Calls of a size by name, prepared; why there is none goes among the failures."""
     for name, task in tasks.items():
+        whole = partial(_whole, task)
         try:
-            expected = predicted(task, size, least, budget)
-            call = task(size)
-        except OverBudget as error:
-            found[name] = Cost(failure=str(error))
-        except Exception as error:  # a scheme that does not apply or fails is a row with its reason
-            found[name] = Cost(failure=reason(error))
-        else:
-            if expected > SLOW * budget:
-                found[name] = Cost(_seconds(call), rounds=1)
+            cost = budget.forecast(whole, size, linear=task.linear, sizes=rungs(size, least))
+            if budget.affords(cost):
+                yield name, task.prepare(size)
             else:
-                fast[name] = repeated(call)
-    for name, timing in interleaved(fast, rounds, seed, duration).items():
-        found[name] = Cost(timing.median, timing.iqr, timing.rounds)
-    return found
+                failures[name] = OVER
+        except Exception as error:  # a scheme that does not apply or fails is a row with its reason
+            failures[name] = reason(error)
 
 
-def predicted(task: Task, size: int, least: int, budget: float) -> float:
-    """Seconds that a call of a size should take, from smaller ones.
-
-    From one rung to the next the time grows as over the last two, and at least by FACTOR.  Raises
-    OverBudget where the call or its preparation would exceed the budget.
-    """
-    sizes = rungs(size, least)
-    task(sizes[0])()  # whatever is compiled or imported at first use
-    expected = 0.0
-    before = (math.inf, math.inf)
-    for rung in sizes:
-        start = time.perf_counter()
-        call = task(rung)
-        preparing = time.perf_counter() - start
-        calling = _seconds(call)
-        if calling < budget / FACTOR and _grown(calling, before[1]) > budget:
-            calling = min(calling, _seconds(call))  # a hiccup is no growth
-        expected = _grown(calling, before[1])
-        if max(_grown(preparing, before[0]), expected) > budget:
-            raise OverBudget
-        before = preparing, calling
-    return expected
-
-
-def _grown(seconds: float, before: float) -> float:
-    return seconds * max(FACTOR, seconds / before if before > 0.0 else 0.0)
-
-
-def rungs(size: int, least: int) -> list[int]:
-    """Sizes below ``size``, a power of FACTOR apart, not less than ``least``, ascending.
-
-    The size itself where none is smaller: the first call has nothing to go by.
-    """
-    powers = range(int(math.log(size / least, FACTOR) + 1e-9), 0, -1)
-    return [size // FACTOR**k for k in powers] or [size]
+def _whole(task: Task, size: int) -> Call:
+    """A call with its preparation, which may take longer."""
+    return lambda: task.prepare(size)()
 
 
 def peak_bytes(call: Call) -> float:
-    """Growth of the resident memory during a call at its highest, its result included; NaN where
-    the system does not tell (it is read from Linux's /proc).
+    """Growth of the resident memory during a call at its highest, its result included.
 
-    Counts what compiled code allocates too, which tracemalloc does not see.
+    NaN where the system does not tell: it is read from Linux's /proc.  Counts
+    what compiled code allocates too, which tracemalloc does not see.
     """
     call()  # pages of code and caches are in
     try:
@@ -138,12 +132,6 @@ def operations(curve: Curve, unit: str) -> dict[str, float]:
     if curve.operations == UNSTATED:
         return dict.fromkeys(OPERATIONS, math.nan)
     return per_sample(curve) if unit == "sample" else per_keyframe(curve)
-
-
-def _seconds(call: Call) -> float:
-    start = time.perf_counter()
-    call()
-    return time.perf_counter() - start
 
 
 def _status(field: str) -> float:

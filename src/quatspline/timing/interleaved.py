@@ -8,12 +8,20 @@ long enough, and is then measured once a round, in an order drawn anew for each 
 from __future__ import annotations
 
 import gc
+import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Hashable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import partial
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+
+from quatspline.timing.budget import Call
+
+K = TypeVar("K", bound=Hashable)
+"""What a contender is known by."""
 
 LEAST = 0.02
 """Seconds that a measurement should last: far above the clock's resolution and jitter."""
@@ -23,7 +31,7 @@ Contender = Callable[[int], object]
 
 @dataclass(frozen=True)
 class Timing:
-    """Seconds of one call: median and interquartile range over rounds."""
+    """Seconds of one call: median and interquartile range (NaN for a single one) over rounds."""
 
     median: float
     iqr: float
@@ -31,15 +39,7 @@ class Timing:
     loops: int
 
 
-class OverBudget(Exception):
-    """A call that would take longer than its budget; the message carries no seconds, so that tables of
-    two runs can be told apart by their timing columns alone."""
-
-    def __init__(self, message: str = "over budget") -> None:
-        super().__init__(message)
-
-
-def repeated(call: Callable[[], object]) -> Contender:
+def repeated(call: Call) -> Contender:
     """A contender that repeats a call."""
 
     def contender(loops: int) -> None:
@@ -49,10 +49,10 @@ def repeated(call: Callable[[], object]) -> Contender:
     return contender
 
 
-def elapsed(contender: Contender, loops: int) -> float:
-    """Seconds of one measurement."""
+def elapsed(call: Call) -> float:
+    """Seconds of a call, by the clock."""
     start = time.perf_counter()
-    contender(loops)
+    call()
     return time.perf_counter() - start
 
 
@@ -60,28 +60,48 @@ def calibrated(contender: Contender, least: float = LEAST) -> int:
     """The repeat count at which a measurement lasts about ``least`` seconds."""
     contender(1)
     loops = 1
-    while (seconds := elapsed(contender, loops)) < least / 4:
+    while (lasts := elapsed(partial(contender, loops))) < least / 4:
         loops *= 4
-    return max(1, int(np.ceil(loops * least / seconds)))
+    return max(1, int(np.ceil(loops * least / lasts)))
+
+
+def timed(
+    calls: Iterable[tuple[K, Call]], *, slow: float, rounds: int, least: float, seed: int = 0
+) -> dict[K, Timing]:
+    """Time calls by name: those that last longer than ``slow`` once, all others interleaved.
+
+    Slow ones are let go as soon as they are timed: what was prepared for them may be large.
+    """
+    once: dict[K, Timing] = {}
+    quick: dict[K, Contender] = {}
+    for name, call in calls:
+        lasts = elapsed(call)
+        if lasts > slow:
+            once[name] = Timing(lasts, math.nan, 1, 1)
+        else:
+            quick[name] = repeated(call)
+    return once | interleaved(quick, rounds, seed, least)
 
 
 def interleaved(
-    contenders: Mapping[str, Contender], rounds: int, seed: int = 0, least: float = LEAST
-) -> dict[str, Timing]:
+    contenders: Mapping[K, Contender], rounds: int, seed: int = 0, least: float = LEAST
+) -> dict[K, Timing]:
     """Time all contenders in one run, interleaved; compare the results only with one another."""
     rng = np.random.default_rng(seed)
     loops = {name: calibrated(contender, least) for name, contender in contenders.items()}
-    seconds: dict[str, list[float]] = {name: [] for name in contenders}
+    names = list(contenders)
+    spent: dict[K, list[float]] = {name: [] for name in names}
     enabled = gc.isenabled()
     gc.disable()
     try:
         for _ in range(rounds):
-            for name in rng.permutation(list(contenders)):
-                seconds[name].append(elapsed(contenders[name], loops[name]) / loops[name])
+            for name in (names[i] for i in rng.permutation(len(names))):
+                measurement = partial(contenders[name], loops[name])
+                spent[name].append(elapsed(measurement) / loops[name])
     finally:
         if enabled:
             gc.enable()
-    return {name: _summary(np.array(s), rounds, loops[name]) for name, s in seconds.items()}
+    return {name: _summary(np.array(s), rounds, loops[name]) for name, s in spent.items()}
 
 
 def _summary(seconds: NDArray[np.float64], rounds: int, loops: int) -> Timing:

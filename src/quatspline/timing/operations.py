@@ -15,8 +15,10 @@ Counts = dict[str, float]
 
 
 class Executed(NamedTuple):
-    """Counts by operation: of updates of an iteration and of samples; and of the rest, which is set-up and
-    what an iteration does before its first update and after its last."""
+    """Counts by operation: of updates of an iteration and of samples, and of the rest.
+
+    The rest is set-up and what an iteration does before its first update and after its last.
+    """
 
     updates: Counts
     rest: Counts

@@ -8,6 +8,7 @@ through the same steps in Python.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, Literal
 
 import numpy as np
@@ -30,10 +31,11 @@ def frames(
     scheme: type[Curve], keyframes: Keyframes, t: FloatArray, protocol: Protocol, **options: Any
 ) -> Callable[[int], FloatArray]:
     """A function of a repeat count that generates the frames at t (m,) by one protocol; -> (m, 4)."""
-    curve = scheme.from_keyframes(keyframes, **options)
+    make = partial(scheme.from_keyframes, keyframes, **options)
+    curve = make()
     if isinstance(curve, SegmentCurve) and hasattr(curve, "fit_kernel"):
         return _compiled(curve, t, protocol)
-    return _interpreted(scheme, keyframes, t, protocol, options)
+    return _interpreted(make, keyframes, t, protocol)
 
 
 def _compiled(
@@ -65,23 +67,16 @@ def _compiled(
 
 
 def _interpreted(
-    scheme: type[Curve],
-    keyframes: Keyframes,
-    t: FloatArray,
-    protocol: Protocol,
-    options: dict[str, Any],
+    make: Callable[[], Curve], keyframes: Keyframes, t: FloatArray, protocol: Protocol
 ) -> Callable[[int], FloatArray]:
     out, origin = np.empty((t.size, 1, 4)), float(keyframes.times[0])
+    singly = [slice(i, i + 1) for i in range(t.size)]
+    parts = singly if protocol == "per-frame" else [slice(None)]
 
     def generate(repeats: int) -> FloatArray:
         for _ in range(repeats):
-            if protocol == "solve-once":
-                curve = scheme.from_keyframes(keyframes, **options)
-                curve._evaluate(t, origin, SLACK, 0, out.reshape(-1), 1)
-                continue
-            for i in range(t.size):
-                curve = scheme.from_keyframes(keyframes, **options)
-                curve._evaluate(t[i : i + 1], origin, SLACK, 0, out[i].reshape(-1), 1)
+            for part in parts:
+                make()._evaluate(t[part], origin, SLACK, 0, out[part].reshape(-1), 1)
         return out[:, 0]
 
     return generate

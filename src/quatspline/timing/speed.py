@@ -11,42 +11,34 @@ import os
 import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from functools import partial
 
 import numpy as np
 
 from quatspline.catalogue import scheme
 from quatspline.curve import Curve
 from quatspline.instruments.trials import reason
-from quatspline.options import declared_by
+from quatspline.options import among
 from quatspline.quaternion import FloatArray
-from quatspline.timing.interleaved import (
-    LEAST,
-    Contender,
-    OverBudget,
-    Timing,
-    elapsed,
-    interleaved,
-    repeated,
-)
+from quatspline.timing.budget import Budget, OverBudget, calls, seconds
+from quatspline.timing.interleaved import LEAST, Contender, Timing, interleaved, repeated
 from quatspline.trajectories.walks import loop, walk
 
 FILL, SINCOS = "out.fill", "sin, cos"
 FLOORS = (FILL, SINCOS)
 DEGREES = 40.0
-TOLERANCE = 1e-9
-"""Of iterative schemes."""
+OPTIONS = {"tolerance": 1e-9}
+"""Of schemes that have them: iterative ones."""
 
 QUICK_PATIENCE, PATIENCE = 0.02, 0.1
 """Seconds that one call of a contender may take at either size: slower ones get the first samples only,
 which lie as densely: some libraries take a step a segment."""
 PROBE = 100
 
-FEW, BUDGET = 1000, 5.0
-"""Keyframes from which the set-up of a peer is foretold, and the seconds that it may take."""
+BUDGET = Budget(limit=1e6, meter=calls)
+"""Of a library's set-up, about a quarter of a second: it is called a dozen times."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +64,7 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Row:
+class Timed:
     """A timed contender, or why there is none."""
 
     name: str
@@ -83,7 +75,7 @@ class Row:
 
 def measured(
     task: Task, names: Iterable[str], rounds: int, seed: int = 0, least: float = LEAST
-) -> Iterator[Row]:
+) -> Iterator[Timed]:
     """Time the floors and schemes of a task interleaved; one row each."""
     made: dict[str, Contender] = {}
     items: dict[str, int] = {}
@@ -91,19 +83,21 @@ def measured(
         try:
             made[name], items[name] = contender_of(task, name)
         except OverBudget as error:
-            yield Row(name, failure=str(error))
+            yield Timed(name, failure=str(error))
         except Exception as error:  # what does not apply is a row with its reason
-            yield Row(name, failure=reason(error))
+            yield Timed(name, failure=reason(error))
     for name, timing in interleaved(made, rounds, seed, least).items():
-        yield Row(name, items[name], timing)
+        yield Timed(name, items[name], timing)
 
 
 def contender_of(task: Task, name: str) -> tuple[Contender, int]:
     """The contender of a scheme or a floor, and the items that it does; raises where there is none."""
     if name in FLOORS:
         return _floor(task, name), task.items
-    make = task.work(name)
-    items = _affordable(task, make)
+    make, items = task.work(name), task.items
+    if task.patience is not None:
+        patience = Budget(limit=task.patience, meter=seconds)
+        items = patience.largest(lambda some: partial(make(some), 1), items, PROBE)
     return make(items), items
 
 
@@ -121,23 +115,6 @@ def _floor(task: Task, name: str) -> Contender:
     return repeated(waves)
 
 
-def _affordable(task: Task, make: Callable[[int], Contender]) -> int:
-    """The items that a contender does within the task's patience.
-
-    By ever larger probes: what a call costs whatever their number must not show in the time of one.
-    """
-    if task.patience is None:
-        return task.items
-    items = min(PROBE, task.items)
-    while True:
-        probe = make(items)
-        probe(1)  # what is compiled or cached on first use
-        seconds = elapsed(probe, 1)
-        if items == task.items or seconds > task.patience / 2:
-            return items
-        items = min(task.items, int(items * min(10.0, task.patience / seconds)))
-
-
 # -- tasks ---------------------------------------------------------------------------------------
 
 
@@ -147,9 +124,9 @@ def tasks(rng: np.random.Generator, quick: bool) -> list[Task]:
     patience = QUICK_PATIENCE if quick else PATIENCE
     even = np.linspace(0.0, 999.0, 1_000_000)
     chosen = [
-        _evaluation("evaluate", keyframes, even, patience),
-        _setup("set-up", keyframes),
-        _latency("one sample", keyframes),
+        evaluation("evaluate", keyframes, even, patience),
+        set_up("set-up", keyframes),
+        latency("one sample", keyframes),
     ]
     if quick:
         return chosen
@@ -159,40 +136,30 @@ def tasks(rng: np.random.Generator, quick: bool) -> list[Task]:
     turns = np.tile(loop(rng, 1000, DEGREES)[:, 0], (1000, 1))
     return [
         *chosen,
-        _evaluation("velocity", keyframes, even, patience, order=1),
-        _evaluation("acceleration", keyframes, even, patience, order=2),
-        _evaluation("unsorted", keyframes, rng.permutation(even), patience),
-        _evaluation("three samples a segment", dense, few, patience),
-        _evaluation("31-joint skeleton", bones, frames, patience, width=4 * 31),
-        _evaluation("two threads", keyframes, even, patience, threads=2),
-        _long("a million keyframes", turns),
+        evaluation("velocity", keyframes, even, patience, order=1),
+        evaluation("acceleration", keyframes, even, patience, order=2),
+        evaluation("unsorted", keyframes, rng.permutation(even), patience),
+        evaluation("three samples a segment", dense, few, patience),
+        evaluation("31-joint skeleton", bones, frames, patience, width=4 * 31),
+        evaluation("two threads", keyframes, even, patience, threads=2),
+        long_set_up("a million keyframes", turns),
     ]
 
 
-def _options(name: str) -> dict[str, Any]:
-    return {"tolerance": TOLERANCE} if "tolerance" in declared_by(scheme(name)) else {}
-
-
-def _practical(name: str, count: int) -> type[Curve]:
-    """The scheme, unless it says that so many keyframes are too many for it."""
+def _practical(name: str, count: int, samples: int = 0) -> type[Curve]:
+    """The scheme, unless so many keyframes, and samples of every segment, are too many for it."""
     cls = scheme(name)
-    if failure := cls.impractical(count):
+    if failure := BUDGET.refusal(cls, count, (samples, 0, 0)):
         raise OverBudget(failure)
     return cls
 
 
 def _curve(name: str, keyframes: FloatArray) -> Curve:
     cls = _practical(name, len(keyframes))
-    if cls.peer is not None and len(keyframes) > FEW:  # the cost may grow with the square
-        start = time.perf_counter()
-        cls(None, keyframes[:FEW])
-        seconds = (time.perf_counter() - start) * (len(keyframes) / FEW) ** 2
-        if seconds > BUDGET:
-            raise OverBudget
-    return cls(None, keyframes, **_options(name))
+    return cls(None, keyframes, **among(cls, OPTIONS))
 
 
-def _evaluation(
+def evaluation(
     name: str,
     keyframes: FloatArray,
     t: FloatArray,
@@ -221,19 +188,19 @@ def _evaluation(
     )
 
 
-def _setup(name: str, keyframes: FloatArray) -> Task:
+def set_up(name: str, keyframes: FloatArray) -> Task:
     """The public call that builds a curve, validation included."""
     times = np.arange(float(len(keyframes)))
 
     def work(who: str) -> Callable[[int], Contender]:
-        _curve(who, keyframes)
-        cls, options = scheme(who), _options(who)
-        return lambda items: repeated(lambda: cls(times, keyframes, **options))
+        curve = _curve(who, keyframes)  # what does not apply raises here
+        make = partial(type(curve), times, keyframes, **curve.options)
+        return lambda items: repeated(make)
 
     return Task(name, "keyframe", len(keyframes), len(keyframes), 4, work)
 
 
-def _latency(name: str, keyframes: FloatArray) -> Task:
+def latency(name: str, keyframes: FloatArray) -> Task:
     """One sample a call: a frame loop."""
 
     def work(who: str) -> Callable[[int], Contender]:
@@ -243,15 +210,14 @@ def _latency(name: str, keyframes: FloatArray) -> Task:
     return Task(name, "call", len(keyframes), 1, 4, work)
 
 
-def _long(name: str, keyframes: FloatArray) -> Task:
+def long_set_up(name: str, keyframes: FloatArray) -> Task:
     """Set-up and a sample a segment, so that nothing waits to be fitted."""
     t = np.arange(len(keyframes) - 1.0) + 0.5
 
     def work(who: str) -> Callable[[int], Contender]:
-        cls, options = _practical(who, len(keyframes)), _options(who)
-        if cls.peer is not None:
-            raise OverBudget
-        return lambda items: repeated(lambda: cls(None, keyframes, **options)(t))
+        cls = _practical(who, len(keyframes), samples=1)
+        make = partial(cls, None, keyframes, **among(cls, OPTIONS))
+        return lambda items: repeated(lambda: make()(t))
 
     return Task(name, "keyframe", len(keyframes), len(keyframes), 4, work)
 
@@ -277,8 +243,10 @@ print(time.perf_counter() - start)
 
 
 def starts(rounds: int, quick: bool) -> Iterator[tuple[str, list[float]]]:
-    """Seconds in new processes: the import; a first curve and sample from cached code, in full size also
-    compiling it."""
+    """Seconds in new processes: the import; a first curve and sample from cached code.
+
+    In full size also with its compilation.
+    """
     yield "import quatspline", [_seconds(_IMPORT) for _ in range(rounds)]
     yield "first sample, code cached", [_seconds(_FIRST) for _ in range(rounds)]
     if quick:

@@ -27,7 +27,7 @@ SOLVE = {"stop": "change", "tolerance": 1e-6}
 
 
 @dataclass(frozen=True)
-class Row:
+class PaperRow:
     """A row of the paper's Table 1; seconds in Matlab 7.11 on a Core i5-3210M at 2.5 GHz."""
 
     frames: int
@@ -49,7 +49,7 @@ class PaperCase:
     title: str
     euler: tuple[tuple[int, int, int], ...]
     closed: bool
-    rows: tuple[Row, ...]
+    rows: tuple[PaperRow, ...]
 
     @property
     def quaternions(self) -> FloatArray:
@@ -84,9 +84,9 @@ KEY = PaperCase(
     ((0, 0, 0), (-10, -20, 110), (20, 20, 160), (-20, -20, 250), (-20, -20, 340)),
     False,
     (
-        Row(9, True, 16, 0.428924, 0.232556, 1.84),
-        Row(101, False, 16, 2.269482, 0.054245, 41.8),
-        Row(201, False, 16, 4.056699, 0.059091, 68.7),
+        PaperRow(9, True, 16, 0.428924, 0.232556, 1.84),
+        PaperRow(101, False, 16, 2.269482, 0.054245, 41.8),
+        PaperRow(201, False, 16, 4.056699, 0.059091, 68.7),
     ),
 )
 
@@ -96,9 +96,9 @@ TEAPOT = PaperCase(
     ((0, 0, 0), (60, -10, -130), (120, 10, -10), (180, 20, 90), (240, 10, 140), (300, -20, -110)),
     True,
     (
-        Row(12, True, 40, 1.067959, 0.261552, 4.08),
-        Row(150, False, 40, 3.830228, 0.068203, 56.2),
-        Row(300, False, 40, 6.129554, 0.069013, 88.8),
+        PaperRow(12, True, 40, 1.067959, 0.261552, 4.08),
+        PaperRow(150, False, 40, 3.830228, 0.068203, 56.2),
+        PaperRow(300, False, 40, 6.129554, 0.069013, 88.8),
     ),
 )
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 from quatspline.motion.files.names import (
     COMPONENTS,
-    EXACT,
     PLAIN,
     POSITIONS,
     QUATERNIONS,
+    SURE,
     UNKNOWN,
     VECTOR,
     components,
@@ -150,7 +150,7 @@ def _position(names: Sequence[str], groups: list[_Group]) -> _Group | None:
     best = min((group.rank(POSITIONS) for group in named if group.has(VECTOR)), default=UNKNOWN)
     found = [group for group in named if group.has(VECTOR) and group.rank(POSITIONS) == best]
     for group in named:
-        if group.words and group.rank(POSITIONS) == EXACT and not group.has(VECTOR):
+        if group.words and group.rank(POSITIONS) == SURE and not group.has(VECTOR):
             missing = next(part for part in VECTOR if part not in group.columns)
             beside = _quoted(names[i] for i in group.columns.values())
             raise ValueError(

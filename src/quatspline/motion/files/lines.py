@@ -51,6 +51,7 @@ class Lines:
                 yield line
 
     def error(self, what: object, number: int | None = None) -> KeyframeFileError:
+        """A refusal that names the file and the line."""
         return KeyframeFileError(f"{self.path}, line {number or self.number}: {what}")
 
 

@@ -27,7 +27,7 @@ LETTERS = frozenset({*COMPONENTS, *HAMILTON, *SCALARS})
 Component = tuple[tuple[str, ...], str]
 """The words before a component, and the component."""
 
-EXACT, FRAMED, ELSEWHERE, UNKNOWN = range(4)
+SURE, FRAMED, ELSEWHERE, UNKNOWN = range(4)
 """How surely a name means what it says: ``q``, ``q_RS``, ``gt_q``, ``head``; surer names win."""
 
 
@@ -77,7 +77,7 @@ def rank(before: tuple[str, ...], known: frozenset[str]) -> int:
     """How surely the words before a component mean what ``known`` words do."""
     told = tuple(word for word in before if word not in PATHS)
     if not told or (told[0] in known and len(told) == 1):
-        return EXACT
+        return SURE
     if told[0] in known:
         return FRAMED
     return UNKNOWN if known.isdisjoint(told) else ELSEWHERE
@@ -91,7 +91,7 @@ def time_rank(name: str) -> int:
     if not told or len(named) + len(units) < len(told):
         return UNKNOWN
     if named:
-        return EXACT if PATHS.isdisjoint(words(name)) else FRAMED
+        return SURE if PATHS.isdisjoint(words(name)) else FRAMED
     return UNKNOWN if units == ["s"] else FRAMED  # "secs" beside "nsecs" is half a time
 
 

@@ -17,9 +17,9 @@ from quatspline.runs.experiment import (
     Run,
     Size,
     experiments,
+    files,
     fingerprint,
-    found,
-    reason,
+    traced,
 )
 from quatspline.runs.journal import Journal, Kept, forget
 from quatspline.runs.results import JOURNAL, PAGE, Results, now
@@ -27,7 +27,7 @@ from quatspline.runs.results import JOURNAL, PAGE, Results, now
 if TYPE_CHECKING:
     import pandas as pd
 
-__all__ = ["Run", "experiments", "fingerprint", "found", "run"]
+__all__ = ["Run", "experiments", "fingerprint", "run"]
 
 
 def run(
@@ -78,14 +78,14 @@ def run(
 
 def _outputs(chosen: Sequence[Experiment], *, page: bool) -> list[str]:
     """The files that a run may write, as far as that can be told before."""
-    files = [f"{e.name}{end}" for e in chosen for end in e.outputs]
-    return [*files, PAGE, JOURNAL] if page else [*files, JOURNAL]
+    names = [f"{e.name}{end}" for e in chosen for end in e.outputs]
+    return [*names, PAGE, JOURNAL] if page else [*names, JOURNAL]
 
 
 def _outdated(chosen: Sequence[Experiment], results: Results) -> list[tuple[Experiment, Run]]:
     """Derived experiments of the folder that would not be run, with what they were asked for."""
     earlier = results.manifest.get("experiments") or {}
-    others = sorted((set(earlier) & set(found())) - {e.name for e in chosen})
+    others = sorted((set(earlier) & set(files())) - {e.name for e in chosen})
     derived = [e for e in (experiments(others) if others else []) if e.derived]
     entries = [(e, earlier[e.name]) for e in derived]
     return [(e, Run.of(entry["size"], entry["schemes"], entry["seed"])) for e, entry in entries]
@@ -106,7 +106,7 @@ def _write_page(results: Results, *, asked: bool) -> list[str]:
     try:
         _say(f"{write_page(results)}: written")
     except Exception as error:
-        _say(f"{PAGE}: failed: {reason(error)}")
+        _say(f"{PAGE}: failed: {traced(error)}")
         return [PAGE]
     return []
 
@@ -128,9 +128,9 @@ def _run_or_keep(experiment: Experiment, run: Run, results: Results, journal: Jo
     try:
         _perform(experiment, run, results)
     except Exception as error:
-        entry["failure"] = reason(error)
+        entry["failure"] = traced(error)
         results.text(f"{name}.error.txt", "".join(traceback.format_exception(error)))
-    results.sweep(name)
+    results.tidy(name)
     entry |= {"end": now(), "seconds": round(time.perf_counter() - began, 3)}
     results.record(name, entry)
     if entry["failure"]:
