@@ -109,9 +109,7 @@ def pose(q, h, sign, clamped, w):
 
 @compiled
 def set_ends(q, h, parameters, w):
-    """Increments h v / 3 to a clamped curve's outer controls, v being half the given angular
-    velocities or the chart's estimates.
-    """
+    """Increments h v / 3 to a clamped curve's outer controls, v given (halved) or estimated."""
     for side in range(2):
         v = 0.5 * vec_at(parameters, VELOCITIES + 3 * side)
         if parameters[HAS_START + side] == 0.0:

@@ -60,8 +60,9 @@ def put_far_jets(jets, m, p, j, size):
 
 @compiled
 def set_jets(m, p, w, jets):
-    """The jets (s, c, b) of m_k w_k, p_k w_{k+1} and w_{k+1} for every knot k, in rows BEFORE,
-    AFTER and WHOLE; loops of few constants and no branch, which vectorise.
+    """The jets of m_k w_k, p_k w_{k+1} and w_{k+1} for every knot k.
+
+    Loops of few constants and no branch, which vectorise.
     """
     n = m.size
     size = np.empty(n + 1)
@@ -124,8 +125,10 @@ def set_gaps(w, jets, d, gaps):
 
 @inlined
 def _rows(a, first, start):
-    """Three rows from a column on: an index that starts at 0 there cannot be negative, which keeps loops
-    free of checks."""
+    """Three rows from a column on.
+
+    An index that starts at 0 there cannot be negative, which keeps loops free of checks.
+    """
     return a[first, start:], a[first + 1, start:], a[first + 2, start:]
 
 
