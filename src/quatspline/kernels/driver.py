@@ -14,6 +14,8 @@ import numpy as np
 from numba import carray
 
 from quatspline.inputs.arrays import FloatArray, IntArray
+from quatspline.kernels.compiler import machine
+from quatspline.kernels.intrinsics import at_address, call_fit, call_sample, on_stack, splat
 from quatspline.kernels.jit import (
     BLOCK,
     CONSTANTS,
@@ -22,13 +24,8 @@ from quatspline.kernels.jit import (
     RESULT,
     ROWS,
     UNREPORTED,
-    at_address,
-    call_fit,
-    call_sample,
     compiled,
     inlined,
-    on_stack,
-    splat,
 )
 from quatspline.kernels.values import put_quat, put_vec, quat_at, vec_at
 
@@ -68,7 +65,7 @@ def described(knots: FloatArray, segments: FloatArray, signs: FloatArray, closed
         if array.dtype != np.float64 or not array.flags.c_contiguous:
             raise ValueError("knots, segments and signs: C-contiguous float64 is expected")
     places = np.empty(CLOSED + 1, np.int64)
-    _describe(knots, segments, signs, closed, places)
+    machine(_describe)(knots, segments, signs, closed, places)
     return places
 
 

@@ -19,17 +19,12 @@ inverse on the ball |v| <= pi.
 from __future__ import annotations
 
 import math
-import operator
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from numba.core import types
-from numba.extending import overload
-
-from quatspline.kernels.jit import SETTINGS, inlined
+from quatspline.kernels.jit import inlined
 from quatspline.kernels.scalars import ANTIPODAL_SINE, TINY, arctan, sinc, sincos
 
-# The formulas of operators are methods; `_teach` tells compiled code of them.
+# The formulas of operators are methods; `compiler` tells compiled code of them.
 
 
 class Quat(NamedTuple):
@@ -120,43 +115,6 @@ for _cls in (Quat, Vec, Mat):
     _cls.__array_ufunc__ = None  # type: ignore[union-attr]  # numpy's numbers, too, ask a for f * a
 
 Vec.__mul__ = None  # type: ignore[assignment]  # a tuple times 2 is one twice as long
-
-SYMBOLS: dict[Any, str] = {
-    operator.mul: "__mul__",
-    operator.add: "__add__",
-    operator.sub: "__sub__",
-    operator.matmul: "__matmul__",
-    operator.neg: "__neg__",
-    operator.invert: "__invert__",
-}
-_timed = {cls: inlined(cls.__rmul__) for cls in (Quat, Vec, Mat)}
-
-
-def _class(kind: Any) -> Any:
-    """The class of a value, of the type that numba has for it; None for other types."""
-    cls = getattr(kind, "instance_class", None)
-    return cls if cls in _timed else None
-
-
-def _teach(symbol: Callable[..., Any], name: str) -> None:
-    """Give an operator its formulas in compiled code."""
-
-    def unary(a):
-        return vars(_class(a)).get(name) if _class(a) else None
-
-    def binary(a, b):
-        if isinstance(a, types.Number) and symbol is operator.mul and _class(b):
-            times = _timed[_class(b)]
-            return lambda a, b: times(b, a)
-        return unary(a)
-
-    chosen: Any = unary if symbol in (operator.neg, operator.invert) else binary
-    options: Any = {"forceinline": True, **SETTINGS}
-    overload(symbol, jit_options=options, strict=False)(chosen)
-
-
-for _symbol, _name in SYMBOLS.items():
-    _teach(_symbol, _name)
 
 
 # -- parts and rows of arrays ---------------------------------------------------------------------

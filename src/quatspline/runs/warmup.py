@@ -11,6 +11,7 @@ import numpy as np
 
 from quatspline import quaternion
 from quatspline.catalogue import found, scheme, schemes
+from quatspline.kernels.engine import always_compiled
 from quatspline.segments import SegmentCurve
 
 
@@ -25,12 +26,13 @@ def compiled_schemes() -> list[str]:
 
 def warm_up(name: str) -> None:
     """Build and evaluate one compiled scheme on a few keyframes, all orders, both angle ranges."""
-    curve = scheme(name)(None, _keyframes())
-    assert isinstance(curve, SegmentCurve)
-    for order in curve.orders:
-        for kernels in (curve.family.near, curve.family.far):
-            curve.kernels = kernels
-            curve(0.5, order)
+    with always_compiled():
+        curve = scheme(name)(None, _keyframes())
+        assert isinstance(curve, SegmentCurve)
+        for order in curve.orders:
+            for kernels in (curve.family.near, curve.family.far):
+                curve.kernels = kernels
+                curve(0.5, order)
 
 
 def _keyframes() -> quaternion.FloatArray:
@@ -42,7 +44,8 @@ def main() -> None:
     start = time.perf_counter()
     names = compiled_schemes()
     warm_up("slerp")  # what all schemes share, before processes part
-    quaternion.log(quaternion.mul(_keyframes(), quaternion.conj(_keyframes())))
+    with always_compiled():
+        quaternion.log(quaternion.mul(_keyframes(), quaternion.conj(_keyframes())))
     for name in schemes():  # peers with compiled caches of their own fill them in one process
         if scheme(name).peer is not None:
             scheme(name)(None, _keyframes())([0.5, 1.5])

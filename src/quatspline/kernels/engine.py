@@ -1,0 +1,85 @@
+"""Two engines run the same functions: plain Python, at once, and machine code, once it repays compiling.
+
+Compiling takes seconds in a fresh installation, and numba's import alone as long as thousands of samples
+in plain Python.  So work begins in Python, is counted, and goes on in machine code from where that would
+have repaid.  What makes tables, `always_compiled`, compiles first, so that no number depends on a cache.
+
+``QUATSPLINE_ENGINE`` decides otherwise: "compiled" or "python".
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from typing import Any
+
+import numpy as np
+
+from quatspline.kernels.jit import Compiled, Kernel
+
+VARIABLE = "QUATSPLINE_ENGINE"
+
+REPAYS = 1e5
+"""Samples that plain Python evaluates (30 to 40 us each, measured) while a scheme compiles."""
+
+ROW = 0.3
+"""Samples that one row of array algebra counts as."""
+
+UNFIT = (ZeroDivisionError, OverflowError, ValueError)
+"""What Python raises where machine code goes on with infinities: such work is compiled."""
+
+_always = 0
+
+
+@contextmanager
+def always_compiled() -> Iterator[None]:
+    """Within it, in any thread of this process, everything is compiled before it runs."""
+    global _always
+    _always += 1
+    try:
+        yield
+    finally:
+        _always -= 1
+
+
+def compiles(work: float, *kernels: Kernel) -> bool:
+    """Whether so much work, in samples, is for machine code; where the kernels are, any is.
+
+    Raises
+    ------
+    ValueError
+        Where the environment names an engine that there is not.
+    """
+    asked = os.environ.get(VARIABLE, "")
+    if asked not in ("", "python", "compiled"):
+        raise ValueError(f"{VARIABLE}={asked!r}: expected 'python' or 'compiled'")
+    if asked:
+        return asked == "compiled"
+    return _always > 0 or work >= REPAYS or (bool(kernels) and all(k.address for k in kernels))
+
+
+def run(function: Compiled, rows: int, *arguments: Any) -> Any:
+    """Call a function, by the engine that it and so many more rows are for."""
+    function.work += ROW * rows
+    if not compiles(function.work):
+        with suppress(*UNFIT), np.errstate(all="ignore"):
+            return function.python(*arguments)
+    return machine(function)(*arguments)
+
+
+def machine(function: Compiled) -> Any:
+    """The machine code of a function."""
+    return function.machine or native().machine(function)
+
+
+def address(kernel: Kernel) -> int:
+    """The address of a kernel's machine code."""
+    return kernel.address or int(native().address(kernel))
+
+
+def native() -> Any:
+    """The module that compiles and drives machine code, with numba: imported when it is first needed."""
+    from quatspline.kernels import native
+
+    return native

@@ -1,0 +1,145 @@
+"""Both engines: plain Python is the reference that compiled kernels are held against."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import quatspline as qs
+from processes import environment
+from quatspline.comparing import compare
+from quatspline.kernels import engine
+from quatspline.segments import SegmentCurve
+from walks import applies, count_of, inside, knots_of, walk
+
+AGREE, REPEATED = 1e-13, 1e-11
+"""Engines round differently, by contraction to fused multiply-adds; rates of what was solved by an
+iteration multiply that."""
+
+
+@pytest.fixture
+def automatic(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv(engine.VARIABLE, raising=False)
+
+
+@applies(lambda scheme: issubclass(scheme, SegmentCurve))
+@pytest.mark.parametrize("degrees", [5.0, 40.0, 150.0])
+def test_engines_agree(scheme, degrees: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    n = min(count_of(scheme), 5)
+    for closed in (False, True) if scheme.closable else (False,):
+        t = knots_of(scheme, n + closed)
+        q = walk(n, degrees, seed=3)
+        values = {}
+        for name in ("python", "compiled"):
+            monkeypatch.setenv(engine.VARIABLE, name)
+            try:
+                curve = scheme(t, q, closed=closed)
+            except qs.ConvergenceError:
+                values[name] = None
+                continue
+            assert curve.engine == name
+            at = np.concatenate([inside(curve.times, 3), curve.times])
+            values[name] = [curve(at, order) for order in curve.orders]
+        plain, fast = values["python"], values["compiled"]
+        assert (plain is None) == (fast is None)
+        for order, (a, b) in enumerate(zip(plain or (), fast or (), strict=True)):
+            bound = REPEATED if order and scheme.iterative else AGREE
+            assert np.abs(a - b).max() <= bound * max(1.0, np.abs(b).max())
+
+
+def test_several_tracks_and_flips_agree(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two tracks that close with either sign, over several periods."""
+    half = np.linspace(0.0, np.pi, 5)[:, None]
+    turn = np.where(np.arange(4) == 0, np.cos(half), np.where(np.arange(4) == 1, np.sin(half), 0))[
+        :4
+    ]
+    q = np.stack([turn, walk(4, 30.0, seed=1)], axis=1)
+    got = {}
+    for name in ("python", "compiled"):
+        monkeypatch.setenv(engine.VARIABLE, name)
+        curve = qs.build("squad", np.arange(5.0), q, closed=True)
+        got[name] = curve(np.linspace(-6.0, 9.0, 31)), curve.keyframes.signs
+    assert set(got["python"][1]) == {1.0, -1.0}
+    np.testing.assert_allclose(got["python"][0], got["compiled"][0], atol=1e-14)
+
+
+def test_a_refused_sample_is_named_by_plain_python_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(engine.VARIABLE, "python")
+    curve = qs.build("slerp", None, walk(4, 30.0))
+    with pytest.raises(ValueError, match=r"t\[1\] = 3\.5: outside the domain"):
+        curve([0.5, 3.5])
+    with pytest.raises(ValueError, match=r"t = nan: not a finite number"):
+        curve(np.nan)
+
+
+FRESH = """
+import sys, quatspline as qs
+keys = [[1, 0, 0, 0], [0.8, 0.6, 0, 0], [0, 0.6, 0.8, 0], [0, 0, 1, 0]]
+curve = qs.build("local-quintic", None, keys)
+curve(0.5), curve([0.5, 2.5], 2)
+print(curve.engine, "numba" in sys.modules, end=" ")
+curve.keyframes.inside(40000), curve(curve.keyframes.inside(40000))
+print(curve.engine, "numba" in sys.modules, qs.build("local-quintic", None, keys).engine)
+"""
+
+
+def test_an_answer_needs_no_compiler_and_work_that_repays_it_gets_one() -> None:
+    env = {k: v for k, v in environment().items() if k != engine.VARIABLE}
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", FRESH],
+        capture_output=True,
+        text=True,
+        env=env,
+        check=True,
+    )
+    assert done.stdout.split() == ["python", "False", "compiled", "True", "compiled"]
+
+
+def test_a_curve_tells_its_engine_and_keeps_it(automatic, monkeypatch) -> None:
+    monkeypatch.setattr(engine, "REPAYS", 100.0)
+    q = walk(4, 30.0)
+    for kernel in (qs.build("nlerp", None, q).fit_kernel, *qs.scheme("nlerp").family.near):
+        monkeypatch.setattr(kernel, "address", 0)
+    curve = qs.build("nlerp", None, q)
+    assert curve.engine == "python"
+    before = curve(0.5)
+    assert curve.engine == "python"
+    curve(np.linspace(0.0, 3.0, 200))
+    assert curve.engine == "compiled"
+    np.testing.assert_allclose(curve(0.5), before, atol=1e-15)
+
+
+def test_tables_are_compiled_first(automatic, monkeypatch) -> None:
+    seen = []
+    original = SegmentCurve._evaluate
+
+    def watched(self, *arguments):
+        seen.append(self.engine)
+        return original(self, *arguments)
+
+    monkeypatch.setattr(SegmentCurve, "_evaluate", watched)
+    compare(None, walk(4, 30.0), ["slerp"])
+    assert set(seen) == {"compiled"}
+
+
+def test_what_python_refuses_to_divide_is_compiled(monkeypatch) -> None:
+    from quatspline.kernels.jit import compiled
+
+    monkeypatch.setenv(engine.VARIABLE, "python")
+
+    def inverse(x):
+        return 1.0 / x
+
+    assert engine.run(compiled(inverse), 1, 4.0) == 0.25
+    assert engine.run(compiled(inverse), 1, 0.0) == np.inf
+
+
+def test_an_unknown_engine_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(engine.VARIABLE, "gpu")
+    with pytest.raises(
+        ValueError, match="QUATSPLINE_ENGINE='gpu': expected 'python' or 'compiled'"
+    ):
+        qs.build("slerp", None, walk(4, 30.0))
