@@ -66,7 +66,7 @@ def address(kernel: Kernel) -> int:
                 python = kernel.python
                 decorate = numba.cfunc(SIGNATURES[kernel.kind], cache=True, **SETTINGS)
                 kernel.machine = _cached(python, lambda: decorate(python))
-                kernel.address = int(kernel.machine.address)
+            kernel.address = int(kernel.machine.address)
     return kernel.address
 
 
