@@ -21,7 +21,7 @@ $(VENV)/run: pyproject.toml requirements.lock
 	@echo "installing into $(VENV) ..."
 	@$(PIP) --editable .
 	@$(PIP) --editable '.[peers]' || echo "some third-party schemes could not be installed: their rows will read n/a"
-	@$(BIN)/python -m quatspline.runs.warmup
+	@$(RUN) warmup
 	@touch $@
 
 $(VENV)/test: $(VENV)/run

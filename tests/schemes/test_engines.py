@@ -133,6 +133,16 @@ def test_tables_are_compiled_first(automatic, monkeypatch) -> None:
     assert compare(None, walk(4, 30.0), ["slerp"])["failure"].isna().all()
 
 
+def test_what_was_compiled_before_repays_sooner(automatic, monkeypatch, tmp_path) -> None:
+    monkeypatch.setenv("QUATSPLINE_CACHE", str(tmp_path))
+    engine.mark_warm()
+    assert [engine.compiles(work) for work in (1.0, engine.LOADS)] == [False, True]
+    next(tmp_path.glob("*.warm")).unlink()
+    engine.forget_warm()
+    assert not engine.compiles(engine.LOADS)
+    assert engine.compiles(engine.REPAYS)
+
+
 def test_what_python_refuses_to_divide_is_compiled(monkeypatch) -> None:
     monkeypatch.setenv(engine.VARIABLE, "python")
 

@@ -32,6 +32,7 @@ def parser() -> argparse.ArgumentParser:
     _add_compare(commands)
     _add_sample(commands)
     _add_report(commands)
+    commands.add_parser("warmup", help="compile everything once, so that nothing waits later")
     return whole
 
 

@@ -1,4 +1,4 @@
-"""The command line: list, run, compare, sample, report.
+"""The command line: list, run, compare, sample, report, warmup.
 
 Exit status: 0 done; 1 something unforeseen failed; 2 bad usage or bad input, told in one line on
 stderr; 130 interrupted.  Whatever is slow to import waits until a command needs it.
@@ -222,10 +222,18 @@ def _naming(path: str) -> Iterator[None]:
         raise ValueError(f"{path}: {error}") from error
 
 
+def _warm_up(arguments: argparse.Namespace) -> int:
+    from quatspline.runs.warmup import main
+
+    main()
+    return DONE
+
+
 COMMANDS = {
     "list": _list,
     "run": _run,
     "compare": _compare,
     "sample": _sample,
     "report": _report,
+    "warmup": _warm_up,
 }

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from quatspline import comparing
+from quatspline.kernels.engine import always_compiled
 from quatspline.system.stdout import say
 
 if TYPE_CHECKING:
@@ -50,7 +51,8 @@ def command(
     began = time.perf_counter()
     keyframes = comparing.prepared(motion.times, motion.quaternions, closed)
     results.begin(call, schemes=list(schemes) if schemes is not None else None)
-    table, curves = comparing.compared(keyframes, schemes)
+    with always_compiled():
+        table, curves = comparing.compared(keyframes, schemes)
     table = results.table(
         "compare",
         table,

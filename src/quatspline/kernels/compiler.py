@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import hashlib
 import operator
-import os
 import re
 import tempfile
 from collections.abc import Callable, Iterator
@@ -25,6 +24,7 @@ from numba.core.compiler_lock import global_compiler_lock
 from quatspline.kernels.jit import BLOCK, INLINED, ROWS, Compiled, Kernel, rows_of
 from quatspline.kernels.values import Mat, Quat, Vec
 from quatspline.system import forking
+from quatspline.system.caching import cache_base
 from quatspline.system.moved import today
 
 SETTINGS: dict[str, Any] = {
@@ -95,10 +95,7 @@ def cache_folder(source: Path) -> str:
     digest = hashlib.sha256(numba.__version__.encode())
     for path in sorted(_compiled_from(source)):
         digest.update(path.read_bytes())
-    import platformdirs
-
-    base = os.environ.get("QUATSPLINE_CACHE") or platformdirs.user_cache_dir("quatspline")
-    folder = Path(base) / digest.hexdigest()[:16]
+    folder = cache_base() / digest.hexdigest()[:16]
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError:

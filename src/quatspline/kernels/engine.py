@@ -4,24 +4,34 @@ Compiling takes seconds in a fresh installation, and numba's import alone as lon
 in plain Python.  So work begins in Python, is counted, and goes on in machine code from where that would
 have repaid.  What makes tables, `always_compiled`, compiles first, so that no number depends on a cache.
 
+``quatspline warmup`` compiles everything once, after which machine code only has to be loaded.
+
 ``QUATSPLINE_ENGINE`` decides otherwise: "compiled" or "python".
 """
 
 from __future__ import annotations
 
+import hashlib
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from quatspline.kernels.jit import Compiled, Kernel
+from quatspline.system.caching import cache_base
 
 VARIABLE = "QUATSPLINE_ENGINE"
 
 REPAYS = 1e5
 """Samples that plain Python evaluates (30 to 40 us each, measured) while a scheme compiles."""
+
+LOADS = 1.5e4
+"""Samples that plain Python evaluates while numba and code that was compiled before load."""
 
 ROW = 0.3
 """Samples that one row of array algebra counts as."""
@@ -56,7 +66,33 @@ def compiles(work: float, *kernels: Kernel) -> bool:
         raise ValueError(f"{VARIABLE}={asked!r}: expected 'python' or 'compiled'")
     if asked:
         return asked == "compiled"
-    return _always > 0 or work >= REPAYS or (bool(kernels) and all(k.address for k in kernels))
+    there = bool(kernels) and all(kernel.address for kernel in kernels)
+    return _always > 0 or there or work >= REPAYS or (work >= LOADS and _is_warm())
+
+
+def mark_warm() -> None:
+    """Note in the cache that everything was compiled from these sources."""
+    _mark().touch()
+    forget_warm()
+
+
+def forget_warm() -> None:
+    """Look at the cache again where it is asked for next."""
+    _is_warm.cache_clear()
+
+
+@cache
+def _is_warm() -> bool:
+    return _mark().exists()
+
+
+def _mark() -> Path:
+    """A file named after the sources of compiled code and numba's version."""
+    digest = hashlib.sha256(version("numba").encode())
+    for room in ("kernels", "families", "fitting", "proposed"):
+        for path in sorted((Path(__file__).parents[1] / room).glob("*.py")):
+            digest.update(path.read_bytes())
+    return cache_base() / f"{digest.hexdigest()[:16]}.warm"
 
 
 def run(function: Compiled, rows: int, *arguments: Any) -> Any:

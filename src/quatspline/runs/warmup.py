@@ -1,4 +1,4 @@
-"""Compile every kernel once, so that no measurement waits: ``python -m quatspline.runs.warmup``."""
+"""Compile every kernel once, so that nothing waits: ``quatspline warmup``."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from quatspline import quaternion
 from quatspline.catalogue import found, scheme, schemes
-from quatspline.kernels.engine import always_compiled
+from quatspline.kernels.engine import always_compiled, mark_warm
 from quatspline.segments import SegmentCurve
 
 
@@ -51,6 +51,7 @@ def main() -> None:
             scheme(name)(None, _keyframes())([0.5, 1.5])
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         list(pool.map(warm_up, names))
+    mark_warm()
     print(f"compiled {len(names)} schemes in {time.perf_counter() - start:.0f} s", file=sys.stderr)
 
 
