@@ -32,6 +32,10 @@ from quatspline.kernels.values import put_quat, put_vec, quat_at, vec_at
 BATCH = 1024
 """Samples located at once, before their tracks are evaluated: within the first-level cache."""
 
+SHARE = 8
+"""Tracks that share a whole batch; of more, batches are smaller, so that their results stay within the
+second-level cache until all tracks have written theirs beside one another."""
+
 LONG = 16
 """Samples of one segment in a row that are worth a block of their own."""
 
@@ -113,9 +117,9 @@ def sample(address, order, curve, origin, slack, t, out):
     where = carray(on_stack(BATCH), (BATCH,)).view(np.uint32)
     spans = carray(on_stack(BLOCKS), (BLOCKS,)).view(np.uint16)  # first sample, number of samples
     owner = carray(on_stack(BLOCKS), (BLOCKS,)).view(np.int64)  # the segment of a block
-    segment = 0
-    for start in range(0, t.size, BATCH):
-        batch = t[start : start + BATCH]
+    segment, step = 0, max(min(BATCH, BATCH * SHARE // tracks), BLOCK)
+    for start in range(0, t.size, step):
+        batch = t[start : start + step]
         made, segment, wraps, bad = _locate(
             knots, closed, origin, slack, batch, segment, u, where, spans, owner
         )
@@ -275,12 +279,17 @@ def _gather(sheet, knots, segments, where, first, n):
         while stop < n and where[first + stop] == i:
             stop += 1
         rate = 1.0 / (knots[i + 1] - knots[i])
-        for j in range(start, stop, LANES):
-            splat(sheet, BLOCK + j, rate)
-        for c in range(segments.shape[1]):
-            value = segments[i, c]
+        if stop - start <= LANES:  # one vector each: a loop of one turn costs more than the store
+            splat(sheet, BLOCK + start, rate)
+            for c in range(segments.shape[1]):
+                splat(sheet, BLOCK * (CONSTANTS + c) + start, segments[i, c])
+        else:
             for j in range(start, stop, LANES):
-                splat(sheet, BLOCK * (CONSTANTS + c) + j, value)
+                splat(sheet, BLOCK + j, rate)
+            for c in range(segments.shape[1]):
+                value = segments[i, c]
+                for j in range(start, stop, LANES):
+                    splat(sheet, BLOCK * (CONSTANTS + c) + j, value)
         start = stop
 
 
