@@ -117,7 +117,8 @@ class Checkout:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
-            env=os.environ | {"PYTHONPATH": str(root.resolve() / "src")},
+            env=os.environ
+            | {"QUATSPLINE_ENGINE": "compiled", "PYTHONPATH": str(root.resolve() / "src")},
         )
         self.keys = [tuple(key) for key in json.loads(self._answer())]
 
