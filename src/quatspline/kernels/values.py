@@ -12,6 +12,8 @@ Python runs the same formulas.
 ``a + b``, ``a - b``, ``-a``
 ==========  =============================================================================
 
+It is longer than other modules because kernels are written in these words and no others.
+
 Logarithms are half rotation vectors: ``exp(v) = (cos |v|, v sin |v| / |v|)``, and ``log`` is its
 inverse on the ball |v| <= pi.
 """
