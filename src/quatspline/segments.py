@@ -19,7 +19,7 @@ from quatspline.curve import Curve
 from quatspline.inputs.arrays import BoolArray, FloatArray
 from quatspline.kernels import engine, plain
 from quatspline.kernels.family import Family
-from quatspline.kernels.jit import CHANGE, ITERATIONS, RESIDUAL, UNREPORTED, Kernel
+from quatspline.kernels.jit import CHANGE, ITERATIONS, REACH, RESIDUAL, UNREPORTED, Kernel
 from quatspline.kernels.scalars import NEAR
 from quatspline.keyframes import segment_of
 from quatspline.solving import WRONG_FIXED_POINT, SolveReport
@@ -95,7 +95,7 @@ class SegmentCurve(Curve):
     ) -> float:
         given = self._keyframes.signs, self.parameters, segments, report
         reach: float = self._run("fit_tracks", self.fit_kernel, tracks, h, closed, *given)
-        if reach == UNREPORTED:
+        if (report[:, REACH] == UNREPORTED).any():  # of one track, the largest reach would hide it
             raise TypeError(f"{self.name}: its fit kernel does not write report[REACH]")
         return reach
 
