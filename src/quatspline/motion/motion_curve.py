@@ -217,7 +217,7 @@ def resampled(
     if times is None:
         return sampled(curve, grid(curve, rate))
     given = real_array("times", times).astype(float).reshape(-1)
-    return sampled(curve, _stamps(motion, given), given)
+    return sampled(curve, stamps_since(motion, given), given)
 
 
 def grid(curve: MotionCurve, rate: float | None = None, count: int | None = None) -> Times:
@@ -255,7 +255,7 @@ def named(track: str, error: Exception) -> Exception:
     return ValueError(f"{track}: {error}")
 
 
-def _stamps(motion: Motion, times: FloatArray) -> Times:
+def stamps_since(motion: Motion, times: FloatArray) -> Times:
     """Stamps of times since the start, in the file's unit: whole ones where its own are."""
     units = times * motion.per_second
     if motion.stamps.dtype.kind == "i":

@@ -28,7 +28,16 @@ from quatspline.motion.motion import Motion
 from quatspline.options import nearest
 from quatspline.system.atomic import replacing
 
-__all__ = ["Motion", "MotionFileError", "Reading", "check_suffix", "read", "write", "write_csv"]
+__all__ = [
+    "Motion",
+    "MotionFileError",
+    "Reading",
+    "check_suffix",
+    "lenient",
+    "read",
+    "write",
+    "write_csv",
+]
 
 
 @dataclass(frozen=True)
@@ -97,6 +106,16 @@ def write(path: str | Path, motion: Motion) -> None:
         raise MotionFileError(f"{path}: cannot be written: {error.strerror or error}") from None
     except ValueError as error:
         raise MotionFileError(f"{path}: {error}") from None
+
+
+def lenient(path: str | Path, reading: Reading) -> Reading:
+    """The same options, but that repeated stamps and rows without numbers are left out."""
+    takes = _format(path).takes
+    return replace(
+        reading,
+        duplicates="first" if "duplicates" in takes else "refuse",
+        missing="skip" if "missing" in takes else "refuse",
+    )
 
 
 def check_suffix(path: str | Path) -> None:

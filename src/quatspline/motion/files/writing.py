@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from decimal import Decimal
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, TextIO
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quatspline.motion.files.columns import (
     CSV_COLUMNS,
@@ -43,6 +44,20 @@ def write_csv(to: Path | TextIO, motion: Motion) -> None:
         columns.insert(1, "track")
         rows = _track_rows(motion, _table(motion, [STAMPS[1], *columns[2:]]))
     _write(to, ",".join(columns), (",".join(row) for row in rows))
+
+
+def write_track_rows(path: Path, motion: Motion, frames: Mapping[str, NDArray[np.intp]]) -> None:
+    """Write some frames of each track as CSV, track by track."""
+    header = ",".join([STAMPS[motion.per_second], "track", "frame", *CSV_COLUMNS[1:]])
+    stamps = motion.stamps.tolist()
+
+    def rows() -> Iterator[str]:
+        for k, name in enumerate(motion.tracks):
+            index = frames[name].tolist()
+            for frame, q in zip(index, motion.quaternions[index, k].tolist(), strict=True):
+                yield ",".join([repr(stamps[frame]), _quoted(name), str(frame), *map(repr, q)])
+
+    _write(path, header, rows())
 
 
 def write_tum(to: Path | TextIO, motion: Motion) -> None:
