@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from quatspline.curve import Curve
     from quatspline.kernels.operations import Operations, Per
     from quatspline.keyframes import Keyframes
+    from quatspline.motion import Motion, MotionFileError, read_motion, write_motion
     from quatspline.proposed.quartic import QuarticSpline
     from quatspline.solving import ConvergenceError, SolveReport
 
@@ -27,19 +28,25 @@ _HOMES = {
     "SolveReport": "quatspline.solving",
     "ConvergenceError": "quatspline.solving",
     "Keyframes": "quatspline.keyframes",
+    "Motion": "quatspline.motion",
+    "MotionFileError": "quatspline.motion",
     "Operations": "quatspline.kernels.operations",
     "Per": "quatspline.kernels.operations",
     "QuarticSpline": "quatspline.proposed.quartic",
     "build": "quatspline.catalogue",
     "compare": "quatspline.comparing",
+    "read_motion": "quatspline.motion",
     "scheme": "quatspline.catalogue",
     "schemes": "quatspline.catalogue",
+    "write_motion": "quatspline.motion",
 }
 
 __all__ = [
     "ConvergenceError",
     "Curve",
     "Keyframes",
+    "Motion",
+    "MotionFileError",
     "Operations",
     "Per",
     "QuarticSpline",
@@ -47,8 +54,10 @@ __all__ = [
     "__version__",
     "build",
     "compare",
+    "read_motion",
     "scheme",
     "schemes",
+    "write_motion",
 ]
 
 

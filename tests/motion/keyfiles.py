@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from quatspline.motion.files import KeyframeFileError, read
+from quatspline.motion.files import MotionFileError, read
 
 
 def put(folder: Path, name: str, content: str) -> Path:
@@ -15,7 +15,7 @@ def put(folder: Path, name: str, content: str) -> Path:
 
 def refusal(path: Path) -> str:
     """What is said of a file, in one line, after its name."""
-    with pytest.raises(KeyframeFileError) as caught:
+    with pytest.raises(MotionFileError) as caught:
         read(path)
     message = str(caught.value)
     assert "\n" not in message

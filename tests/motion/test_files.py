@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 from keyfiles import put, refusal
 
-from quatspline.motion.files import KeyframeFileError, Motion, read, write, writing
+from quatspline.motion.closing import opened, returning
+from quatspline.motion.files import Motion, MotionFileError, read, write, writing
+from quatspline.motion.motion_curve import sampled
 from quatspline.system.atomic import replacing
 
 TIMES = np.array([0.0, 0.1, 1.0 / 3.0, 1305031102.175800085])
@@ -29,20 +31,20 @@ def test_what_is_written_is_read_back_exactly(
     path = tmp_path / f"motion{suffix}"
     write(path, Motion(TIMES, QUATERNIONS, positions))
     motion = read(path)
-    np.testing.assert_array_equal(motion.times, TIMES)
-    np.testing.assert_array_equal(motion.quaternions, QUATERNIONS)
+    np.testing.assert_array_equal(motion.stamps, TIMES)
+    np.testing.assert_array_equal(motion.quaternions[:, 0], QUATERNIONS)
     if positions is None and suffix.lower() not in (".tum", ".txt"):
         assert motion.positions is None
     else:
         expected = np.zeros((4, 3)) if positions is None else positions
-        np.testing.assert_array_equal(motion.positions, expected)
+        np.testing.assert_array_equal(motion.positions[:, 0], expected)
     assert os.listdir(tmp_path) == [path.name]
 
 
 def test_csv_without_a_header_is_in_the_documented_order(tmp_path: Path) -> None:
     motion = read(put(tmp_path, "k.csv", "0,0.8,0.6,0,0\n1,0.6,0,0.8,0\n"))
-    np.testing.assert_array_equal(motion.times, [0, 1])
-    np.testing.assert_array_equal(motion.quaternions, [[0.8, 0.6, 0, 0], [0.6, 0, 0.8, 0]])
+    np.testing.assert_array_equal(motion.stamps, [0, 1])
+    np.testing.assert_array_equal(motion.quaternions[:, 0], [[0.8, 0.6, 0, 0], [0.6, 0, 0.8, 0]])
 
 
 def test_csv_header_names_columns_in_any_order_among_others(tmp_path: Path) -> None:
@@ -54,22 +56,22 @@ def test_csv_header_names_columns_in_any_order_among_others(tmp_path: Path) -> N
         "0,6,0,5,,0.8,4,2e0,0.6\n"
     )
     motion = read(put(tmp_path, "k.csv", text))
-    np.testing.assert_array_equal(motion.times, [-1.5, 2])
-    np.testing.assert_array_equal(motion.quaternions, [[0.8, 0.6, 0, 0], [0.6, 0, 0.8, 0]])
-    np.testing.assert_array_equal(motion.positions, [[9, 8, 7], [6, 5, 4]])
+    np.testing.assert_array_equal(motion.stamps, [-1.5, 2])
+    np.testing.assert_array_equal(motion.quaternions[:, 0], [[0.8, 0.6, 0, 0], [0.6, 0, 0.8, 0]])
+    np.testing.assert_array_equal(motion.positions[:, 0], [[9, 8, 7], [6, 5, 4]])
     assert motion.unread == ("label",)
 
 
 def test_tum_is_scalar_last_with_positions(tmp_path: Path) -> None:
     text = "# timestamp tx ty tz qx qy qz qw\n0 1 2 3 0.6 0 0 0.8\r\n\n 1\t4 5  6 0 0 0 -1 \n"
     motion = read(put(tmp_path, "k.txt", text))
-    np.testing.assert_array_equal(motion.quaternions, [[0.8, 0.6, 0, 0], [-1, 0, 0, 0]])
-    np.testing.assert_array_equal(motion.positions, [[1, 2, 3], [4, 5, 6]])
+    np.testing.assert_array_equal(motion.quaternions[:, 0], [[0.8, 0.6, 0, 0], [-1, 0, 0, 0]])
+    np.testing.assert_array_equal(motion.positions[:, 0], [[1, 2, 3], [4, 5, 6]])
 
 
 def test_a_norm_within_the_tolerance_is_read_as_given(tmp_path: Path) -> None:
     motion = read(put(tmp_path, "k.csv", "0,1.0005,0,0,0\n1,1,0,0,0\n"))
-    assert motion.quaternions[0, 0] == 1.0005
+    assert motion.quaternions[0, 0, 0] == 1.0005
 
 
 # -- what is refused ----------------------------------------------------------------------------
@@ -147,10 +149,10 @@ def test_npz_of_a_closed_motion_has_one_time_more(tmp_path: Path, last: float) -
     np.savez(path, times=[0.0, 1.0, 2.0, last], quaternions=q)
     if last == 3.0:
         motion = read(path)
-        assert (motion.times.shape, motion.quaternions.shape) == ((4,), (3, 4))
-        assert motion.returning() is motion
+        assert (motion.stamps.shape, motion.quaternions.shape) == ((4,), (3, 1, 4))
+        assert returning(motion) is motion
         with pytest.raises(ValueError, match=r"^4 times for 3 quaternions: .*; --closed takes the"):
-            motion.opened()
+            opened(motion)
     else:
         assert refusal(path).startswith(", row 3: t ")
 
@@ -259,14 +261,14 @@ def test_integer_stamps_stay_integers(tmp_path: Path, suffix: str) -> None:
     given = Motion(np.array(STAMPS), QUATERNIONS[:3], POSITIONS[:3])
     write(tmp_path / f"k{suffix}", given)
     motion = read(tmp_path / f"k{suffix}")
-    assert motion.times.dtype == np.int64
-    assert motion.times.tolist() == STAMPS
+    assert motion.stamps.dtype == np.int64
+    assert motion.stamps.tolist() == STAMPS
 
 
 @pytest.mark.parametrize("spelled", ["{}", "+{}", "{}.0", "{}.000", "{}e0", '"{}"'])
 def test_stamps_are_exact_however_they_are_spelled(tmp_path: Path, spelled: str) -> None:
     text = "".join(f"{spelled.format(t)},1,0,0,0\n" for t in STAMPS)
-    times = read(put(tmp_path, "k.csv", text)).times
+    times = read(put(tmp_path, "k.csv", text)).stamps
     assert (times.dtype, times.tolist()) == (np.int64, STAMPS)
 
 
@@ -274,8 +276,8 @@ def test_other_times_are_floats(tmp_path: Path) -> None:
     for times in (["0", "1"], ["9007199254740992", "1e300"], ["0.5", "1650000000000000000"]):
         text = "".join(f"{t},1,0,0,0\n" for t in times)
         motion = read(put(tmp_path, "k.csv", text))
-        np.testing.assert_array_equal(motion.times, list(map(float, times)))
-        assert motion.times.dtype == float
+        np.testing.assert_array_equal(motion.stamps, list(map(float, times)))
+        assert motion.stamps.dtype == float
 
 
 @pytest.mark.parametrize("kind", [np.int32, np.int64, np.uint64, np.float32, np.float16])
@@ -283,9 +285,9 @@ def test_npz_takes_numbers_of_any_kind(tmp_path: Path, kind: type) -> None:
     q = np.array([[1, 0, 0, 0], [0, 1, 0, 0]])
     np.savez(tmp_path / "k.npz", times=np.array([3, 5], kind), quaternions=q.astype(kind))
     motion = read(tmp_path / "k.npz")
-    assert (motion.times.dtype, motion.quaternions.dtype) == (float, float)
-    np.testing.assert_array_equal(motion.times, [3, 5])
-    np.testing.assert_array_equal(motion.quaternions, q)
+    assert (motion.stamps.dtype, motion.quaternions.dtype) == (float, float)
+    np.testing.assert_array_equal(motion.stamps, [3, 5])
+    np.testing.assert_array_equal(motion.quaternions[:, 0], q)
 
 
 def test_stamps_beyond_64_bits_are_refused(tmp_path: Path) -> None:
@@ -336,45 +338,61 @@ def test_writing_goes_through_links_and_keeps_devices(tmp_path: Path) -> None:
 
 
 def test_a_file_that_cannot_be_written_is_named(tmp_path: Path) -> None:
-    with pytest.raises(KeyframeFileError, match=r"no/k\.csv: cannot be written: No such file"):
+    with pytest.raises(MotionFileError, match=r"no/k\.csv: cannot be written: No such file"):
         write(tmp_path / "no" / "k.csv", Motion(TIMES, QUATERNIONS))
-    with pytest.raises(KeyframeFileError, match="unknown suffix"):
+    with pytest.raises(MotionFileError, match="unknown suffix"):
         write(tmp_path / "k.json", Motion(TIMES, QUATERNIONS))
 
 
 def test_blocks_of_rows_join(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(writing, "BLOCK", 3)
     write(tmp_path / "k.csv", Motion(TIMES, QUATERNIONS))
-    np.testing.assert_array_equal(read(tmp_path / "k.csv").times, TIMES)
+    np.testing.assert_array_equal(read(tmp_path / "k.csv").stamps, TIMES)
 
 
 # -- motions ------------------------------------------------------------------------------------
 
 
+def along(motion: Motion, stamps: np.ndarray, positions: str = "linear") -> np.ndarray:
+    """Positions (m, 3) at stamps of a slerp curve through a body's motion."""
+    x = sampled(motion.curve("slerp", positions=positions), stamps).positions
+    assert x is not None
+    return x[:, 0]
+
+
 def test_positions_follow_linearly() -> None:
     motion = Motion(np.array([1e9, 1e9 + 2]), QUATERNIONS[:2], np.array([[0.0, 1, 2], [4, 1, 0]]))
-    sampled = motion.sampled(np.array([1e9, 1e9 + 0.5, 1e9 + 2]), QUATERNIONS[:3])
-    np.testing.assert_allclose(sampled.positions, [[0, 1, 2], [1, 1, 1.5], [4, 1, 0]], atol=1e-15)
-    assert Motion(TIMES, QUATERNIONS).sampled(TIMES, QUATERNIONS).positions is None
+    x = along(motion, np.array([1e9, 1e9 + 0.5, 1e9 + 2]))
+    np.testing.assert_allclose(x, [[0, 1, 2], [1, 1, 1.5], [4, 1, 0]], atol=1e-15)
+    bare = Motion(TIMES, QUATERNIONS)
+    assert sampled(bare.curve("slerp"), TIMES).positions is None
 
 
 @pytest.mark.parametrize("spacing", [1.0, 1e-3])
 def test_positions_follow_linearly_however_far_apart(spacing: float) -> None:
     far = np.array([[1e308, -1.7e308, 1e308], [-1e308, 1.7e308, 1e308], [1e308, 0.1, 0.3]])
     motion = Motion(np.arange(3) * spacing, QUATERNIONS[:3], far)
-    x = motion.sampled(np.arange(9) * (spacing / 4), np.tile(QUATERNIONS[0], (9, 1))).positions
+    x = along(motion, np.arange(9) * (spacing / 4))
     np.testing.assert_allclose(x[:5, 0], [1e308, 5e307, 0, -5e307, -1e308], atol=1e293)
     np.testing.assert_allclose(x[:5, 1], [-1.7e308, -8.5e307, 0, 8.5e307, 1.7e308], atol=1e293)
     np.testing.assert_array_equal(x[:5, 2], 1e308)
     np.testing.assert_array_equal(x[::4], far)
 
 
+@pytest.mark.parametrize("positions", ["catmull-rom", "cubic", "local-quintic", "quartic"])
+def test_smooth_positions_of_any_size_are_finite(positions: str) -> None:
+    far = np.array([[1e307, 0, -1e307], [-1e307, 1, 1e307], [1e307, 2, 1e307], [1e307, 4, 0]])
+    x = along(Motion(np.arange(4) * 1e-3, QUATERNIONS, far), np.arange(7) * 5e-4, positions)
+    np.testing.assert_allclose(x[::2], far, rtol=1e-12, atol=1e295)
+    assert np.isfinite(x).all()
+
+
 def test_positions_follow_integer_stamps_exactly() -> None:
     motion = Motion(
         np.array(STAMPS), QUATERNIONS[:3], np.array([[0.0, 0, 0], [1, 0, 0], [3, 0, 0]])
     )
-    sampled = motion.sampled(np.array([EPOCH, EPOCH + 150, EPOCH + 201]), QUATERNIONS[:3])
-    np.testing.assert_array_equal(sampled.positions[:, 0], [0, 1.5, 2.01])
+    x = along(motion, np.array([EPOCH, EPOCH + 150, EPOCH + 201]))
+    np.testing.assert_array_equal(x[:, 0], [0, 1.5, 2.01])
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
@@ -383,57 +401,57 @@ def test_a_repeated_first_orientation_is_the_return(sign: float) -> None:
         np.array([0.0, 1, 5]),
         np.array([QUATERNIONS[0], QUATERNIONS[1], sign * QUATERNIONS[0]]),
     )
-    closed = Motion(times, q, POSITIONS[:3]).returning()
-    np.testing.assert_array_equal(closed.times, times)
-    np.testing.assert_array_equal(closed.quaternions, q[:2])
-    np.testing.assert_array_equal(closed.positions, POSITIONS[:3])
+    closed = returning(Motion(times, q, POSITIONS[:3]))
+    np.testing.assert_array_equal(closed.stamps, times)
+    np.testing.assert_array_equal(closed.quaternions[:, 0], q[:2])
+    np.testing.assert_array_equal(closed.positions[:, 0], POSITIONS[:3])
 
 
 def test_uniform_times_return_after_one_more_step() -> None:
-    closed = Motion(np.array([1.0, 1.5, 2.0]), QUATERNIONS[:3], POSITIONS[:3]).returning()
-    np.testing.assert_allclose(closed.times, [1, 1.5, 2, 2.5])
-    np.testing.assert_array_equal(closed.quaternions, QUATERNIONS[:3])
-    np.testing.assert_array_equal(closed.positions[-1], POSITIONS[0])
+    closed = returning(Motion(np.array([1.0, 1.5, 2.0]), QUATERNIONS[:3], POSITIONS[:3]))
+    np.testing.assert_allclose(closed.stamps, [1, 1.5, 2, 2.5])
+    np.testing.assert_array_equal(closed.quaternions[:, 0], QUATERNIONS[:3])
+    np.testing.assert_array_equal(closed.positions[-1, 0], POSITIONS[0])
 
 
 def test_a_last_row_near_the_first_is_told_apart(tmp_path: Path) -> None:
     half = 0.5e-4
     nearly = [np.cos(half), np.sin(half), 0, 0]
     q = np.array([QUATERNIONS[0], QUATERNIONS[1], QUATERNIONS[2], nearly])
-    closed = Motion(np.arange(4.0), q).returning()
+    closed = returning(Motion(np.arange(4.0), q))
     assert closed.note == (
         "closed: the last row is 0.0057 degrees from the first orientation: taken as a keyframe of its "
         "own, the return follows one step later"
     )
-    assert (len(closed.times), len(closed.quaternions)) == (5, 4)
+    assert (len(closed.stamps), len(closed.quaternions)) == (5, 4)
     with pytest.raises(ValueError, match=r"its return; the last row is 0\.0057 degrees from"):
-        Motion(np.array([0.0, 1, 2, 5]), q).returning()
+        returning(Motion(np.array([0.0, 1, 2, 5]), q))
 
 
 def test_small_steps_are_not_taken_for_a_return() -> None:
     angles = np.radians([0.0, 0.5, 1.0, 0.5]) / 2
     q = np.stack([np.cos(angles), np.sin(angles), 0 * angles, 0 * angles], axis=1)
-    assert Motion(np.arange(4.0), q).returning().note == ""
-    assert Motion(np.arange(3.0), QUATERNIONS[:3]).returning().note == ""
+    assert returning(Motion(np.arange(4.0), q)).note == ""
+    assert returning(Motion(np.arange(3.0), QUATERNIONS[:3])).note == ""
 
 
 def test_a_rounded_return_is_the_return() -> None:
     q = np.array([[0.71, 0, 0, 0.7099], [0.8, 0.6, 0, 0], [0.71, 0, 0, 0.7099]]) / 1.004
     q[2] *= 1.0005
-    assert len(Motion(np.array([0.0, 1, 5]), q).returning().quaternions) == 2
+    assert len(returning(Motion(np.array([0.0, 1, 5]), q)).quaternions) == 2
 
 
 def test_integer_stamps_return_after_one_more_step() -> None:
-    closed = Motion(np.array([EPOCH, EPOCH + 10, EPOCH + 20]), QUATERNIONS[:3]).returning()
-    assert closed.times.dtype == np.int64
-    assert closed.times[-1] == EPOCH + 30
+    closed = returning(Motion(np.array([EPOCH, EPOCH + 10, EPOCH + 20]), QUATERNIONS[:3]))
+    assert closed.stamps.dtype == np.int64
+    assert closed.stamps[-1] == EPOCH + 30
     with pytest.raises(ValueError, match="beyond 64-bit integers"):
-        Motion(np.array([2**63 - 2, 2**63 - 1]), QUATERNIONS[:2]).returning()
+        returning(Motion(np.array([2**63 - 2, 2**63 - 1]), QUATERNIONS[:2]))
 
 
 def test_uneven_times_without_a_return_are_refused() -> None:
     with pytest.raises(ValueError, match="the last row must repeat the first orientation"):
-        Motion(TIMES, QUATERNIONS).returning()
+        returning(Motion(TIMES, QUATERNIONS))
 
 
 # -- whatever else comes ------------------------------------------------------------------------
@@ -451,8 +469,8 @@ TOKENS += ["1e18", "1e-99999999999999999999", "\ufeff"]
 def check_or_told(path: Path) -> str:
     """The refusal of a file, or "" where what is read holds together."""
     try:
-        times = read(path).times
-    except KeyframeFileError as error:
+        times = read(path).stamps
+    except MotionFileError as error:
         return str(error)
     assert np.all(times[1:] > times[:-1])
     return ""

@@ -29,10 +29,10 @@ def taken(folder: Path, text: str, name: str = "k.csv") -> Motion:
 
 
 def check(motion: Motion, positions: bool) -> None:
-    np.testing.assert_array_equal(motion.times, ROWS[:, 0])
-    np.testing.assert_array_equal(motion.quaternions, ROWS[:, 4:])
+    np.testing.assert_array_equal(motion.stamps, ROWS[:, 0])
+    np.testing.assert_array_equal(motion.quaternions[:, 0], ROWS[:, 4:])
     if positions:
-        np.testing.assert_array_equal(motion.positions, ROWS[:, 1:4])
+        np.testing.assert_array_equal(motion.positions[:, 0], ROWS[:, 1:4])
     else:
         assert motion.positions is None
 

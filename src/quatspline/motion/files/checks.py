@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quatspline.keyframes import NORM_TOLERANCE
-from quatspline.motion.files.motion import KeyframeFileError, Times
-from quatspline.quaternion import FloatArray
+from quatspline.motion.errors import MotionFileError
+from quatspline.motion.motion import Times
+from quatspline.quaternion import FloatArray, normalise
 
 Rows = NDArray[np.intp]
 """Indices of rows, in increasing order."""
@@ -39,18 +40,23 @@ class Faults:
             self.found.append((first, f"{self.place(first)}: {tell(first)} ({count})"))
 
     def refuse(self) -> None:
-        """Raise KeyframeFileError if there are any faults."""
+        """Raise MotionFileError if there are any faults."""
         if self.found:
             told = "; ".join(sentence for _, sentence in sorted(self.found))
-            raise KeyframeFileError(f"{self.path}, {told}")
+            raise MotionFileError(f"{self.path}, {told}")
 
 
 def check_numbers(
-    faults: Faults, names: tuple[str, ...], table: FloatArray, refused: dict[int, str]
+    faults: Faults,
+    names: tuple[str, ...],
+    table: FloatArray,
+    refused: dict[int, str],
+    missing: str = "refuse",
 ) -> NDArray[np.bool_]:
     """Faults of rows (n, m) by themselves; which rows are numbers throughout.
 
-    ``refused`` has what is wrong with rows that are no numbers for another reason than a gap.
+    ``refused`` has what is wrong with rows that are no numbers for another reason than a gap;
+    ``missing`` is "skip" where gaps are no fault.
     """
     other = np.zeros(len(table), dtype=bool)
     other[list(refused)] = True
@@ -62,7 +68,7 @@ def check_numbers(
 
     faults.add(np.flatnonzero(other), lambda row: refused[row])
     faults.add(
-        np.flatnonzero(gaps),
+        np.flatnonzero(gaps & (missing == "refuse")),
         lambda row: f"{names[int(np.argmax(np.isnan(table[row])))]} holds no number (blank or nan)",
     )
     faults.add(
@@ -80,6 +86,35 @@ def check_norms(faults: Faults, rows: Rows, q: FloatArray) -> None:
     by_row = dict(zip(rows[off].tolist(), norms[off].tolist(), strict=True))
     limit = f"not 1 (within {NORM_TOLERANCE:g})"
     faults.add(rows[off], lambda row: f"quaternion has norm {by_row[row]:.6g}, {limit}")
+
+
+def distinct(
+    how: str, t: Times, same: Callable[[int, int], bool] = lambda i, j: True
+) -> NDArray[np.intp]:
+    """Indices of rows whose stamps differ from the one before; all where repeats are to be refused."""
+    equal = np.flatnonzero(t[1:] == t[:-1])
+    repeats = [] if how == "refuse" else [i + 1 for i in equal.tolist() if same(i, i + 1)]
+    return np.setdiff1d(np.arange(len(t)), repeats)
+
+
+def combined(how: str, values: FloatArray, first: NDArray[np.intp]) -> FloatArray:
+    """One row (..., 3 or 4) for each group of rows that begins at ``first``.
+
+    The "first" or the "last" of them, or their "mean": of quaternions on one hemisphere, normalised.
+    """
+    if how == "refuse" or len(first) == len(values):
+        return values
+    if how != "mean":
+        return values[first if how == "first" else np.append(first[1:], len(values)) - 1]
+    counts = np.diff(np.append(first, len(values)))
+    heads = np.repeat(values[first], counts, axis=0)
+    turns = values.shape[-1] == 4
+    dots = np.einsum("n...i,n...i->n...", heads, values)[..., np.newaxis]
+    signed = np.where(dots < 0.0, -values, values) if turns else values
+    mean = np.add.reduceat(signed, first, axis=0)
+    mean = normalise(mean) if turns else mean / counts.reshape(-1, *[1] * (mean.ndim - 1))
+    mean[counts == 1] = values[first][counts == 1]  # as given
+    return mean
 
 
 def check_times(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from quatspline.motion.files.forms import QUATERNION, Form, other_form
 from quatspline.motion.files.names import (
     COMPONENTS,
     PLAIN,
@@ -15,13 +16,27 @@ from quatspline.motion.files.names import (
     VECTOR,
     components,
     is_numbered,
+    per_second,
     rank,
     time_rank,
+    words,
 )
 
-CSV_COLUMNS = ("t", "qw", "qx", "qy", "qz")
 POSITION_COLUMNS = ("tx", "ty", "tz")
+CSV_COLUMNS = ("t", *QUATERNION.names)
 TUM_COLUMNS = ("t", *POSITION_COLUMNS, "qx", "qy", "qz", "qw")
+EUROC_COLUMNS = (
+    "timestamp",
+    *(f"p_RS_R_{part} [m]" for part in VECTOR),
+    *(f"q_RS_{part} []" for part in COMPONENTS),
+)
+KITTI_COLUMNS = ("r00", "r01", "r02", "tx", "r10", "r11", "r12", "ty", "r20", "r21", "r22", "tz")
+
+EUROC = (("q", "rs"), 10**9)
+"""By which EuRoC's files are known, whose stamps are nanoseconds without saying so."""
+
+TRACKS = frozenset({"joint", "track"})
+"""What the column is called that says of which track a row is."""
 
 
 @dataclass(frozen=True)
@@ -30,26 +45,42 @@ class Layout:
 
     Attributes
     ----------
-    time : the column of times
-    quaternion : those of w, x, y, z
+    time : the column of times, None where a file has none
+    orientation : those of w, x, y, z, or of what another form has
+    form : what these are
     position : those of x, y, z, or None
     unread : names of all other columns
+    per_second : units of times in a second
+    track : the column that names the track of a row, or None
     """
 
-    time: int
-    quaternion: tuple[int, ...]
+    time: int | None
+    orientation: tuple[int, ...]
+    form: Form
     position: tuple[int, ...] | None
     unread: tuple[str, ...]
+    per_second: int = 1
+    track: int | None = None
 
     @property
     def picked(self) -> tuple[int, ...]:
-        """Columns in the order t, qw, qx, qy, qz and, where there are some, tx, ty, tz."""
-        return (self.time, *self.quaternion, *(self.position or ()))
+        """Columns of numbers in the order of `names`."""
+        time = () if self.time is None else (self.time,)
+        return (*time, *self.orientation, *(self.position or ()))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What columns of numbers are called in messages."""
+        time = () if self.time is None else ("t",)
+        return (*time, *self.form.names, *(POSITION_COLUMNS if self.position else ()))
 
     @property
     def order(self) -> str:
-        """The components of the quaternion from left to right."""
-        return "".join(sorted(COMPONENTS, key=lambda part: self.quaternion[COMPONENTS.index(part)]))
+        """The components of the quaternion from left to right; "" where it is told in another form."""
+        if self.form is not QUATERNION:
+            return ""
+        places = dict(zip(COMPONENTS, self.orientation, strict=True))
+        return "".join(sorted(COMPONENTS, key=places.__getitem__))
 
 
 @dataclass(frozen=True)
@@ -76,13 +107,31 @@ def layout(names: Sequence[str]) -> Layout:
     """
     groups = _groups(names)
     time = _time(names)
-    quaternion = _quaternion(names, groups)
+    form, orientation, quaternion = _orientation(names, groups)
     position = _position(names, [group for group in groups if group is not quaternion])
-    q = tuple(quaternion.columns[part] for part in COMPONENTS)
     x = tuple(position.columns[part] for part in VECTOR) if position else None
-    read = {time, *q, *(x or ())}
+    track = next((i for i, name in enumerate(names) if "_".join(words(name)) in TRACKS), None)
+    read = {time, track, *orientation, *(x or ())}
     unread = tuple(name.strip() for i, name in enumerate(names) if i not in read and name.strip())
-    return Layout(time, q, x, unread)
+    return Layout(time, orientation, form, x, unread, _per_second(names, time, quaternion), track)
+
+
+def _per_second(names: Sequence[str], time: int | None, quaternion: _Group | None) -> int:
+    of_euroc, nanoseconds = EUROC
+    named = 1 if time is None else per_second(names[time])
+    return nanoseconds if quaternion and quaternion.words == of_euroc else named
+
+
+def _orientation(
+    names: Sequence[str], groups: list[_Group]
+) -> tuple[Form, tuple[int, ...], _Group | None]:
+    """The form, the columns and, of a quaternion, the group of columns."""
+    if not any(group.has(COMPONENTS) for group in groups):
+        other = other_form(names)
+        if other:
+            return *other, None
+    found = _quaternion(names, groups)
+    return QUATERNION, tuple(found.columns[part] for part in COMPONENTS), found
 
 
 def is_readable(names: Sequence[str]) -> bool:
@@ -97,7 +146,9 @@ def is_readable(names: Sequence[str]) -> bool:
 # -- times ----------------------------------------------------------------------------------------
 
 
-def _time(names: Sequence[str]) -> int:
+def _time(names: Sequence[str]) -> int | None:
+    if tuple(names) == KITTI_COLUMNS:
+        return None
     ranks = [time_rank(name) for name in names]
     best = min(ranks, default=UNKNOWN)
     if best == UNKNOWN:

@@ -69,13 +69,13 @@ def _named(lines: Lines, names: Sequence[str], width: int, number: int) -> Layou
 
 def _check_order(lines: Lines, number: int, told: str, read: str) -> None:
     """Refuse a comment that enumerates a quaternion in another order than it is read in."""
-    if told and told != "".join(part for part in read if part in told):
+    if told and read and told != "".join(part for part in read if part in told):
         what = f"the comment has the quaternion in the order {', '.join(told)}"
         raise lines.error(f"{what}, but the columns are read as {', '.join(read)}", number)
 
 
 def _check_place(lines: Lines, number: int, place: str, read: str) -> None:
     """Refuse a comment that says that the scalar is where it is not read."""
-    if place and read.index("w") != {"first": 0, "last": len(read) - 1}[place]:
+    if place and read and read.index("w") != {"first": 0, "last": len(read) - 1}[place]:
         what = f"the comment says that the scalar is {place}"
         raise lines.error(f"{what}, but the columns are read as {', '.join(read)}", number)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TextIO
 
-from quatspline.motion.files.motion import KeyframeFileError
+from quatspline.motion.errors import MotionFileError
 from quatspline.motion.files.names import recognised
 
 SEPARATORS = {";": "semicolons", "|": "bars", ",": "commas", "\t": "tabs", " ": "blanks"}
@@ -50,9 +50,9 @@ class Lines:
                 comment = _LATER_COMMENTS
                 yield line
 
-    def error(self, what: object, number: int | None = None) -> KeyframeFileError:
+    def error(self, what: object, number: int | None = None) -> MotionFileError:
         """A refusal that names the file and the line."""
-        return KeyframeFileError(f"{self.path}, line {number or self.number}: {what}")
+        return MotionFileError(f"{self.path}, line {number or self.number}: {what}")
 
 
 def separator(line: str) -> str:

@@ -8,6 +8,9 @@ from functools import lru_cache
 
 TIMES = frozenset({"t", "time", "times", "timestamp", "timestamps", "stamp", "stamps"})
 TIME_UNIT = re.compile(r"(n|nano|u|micro|m|milli)?(s|secs?|seconds?)|nanos|micros|millis")
+FRACTION = re.compile(r"(nano|n|micro|u|µ|μ|milli|m)(?:s|secs?|seconds?)")
+FRACTIONS = {"nano": 10**9, "n": 10**9, "milli": 1000, "m": 1000}
+"""How many of a unit of times make a second, by its prefix; of all other prefixes a million."""
 LENGTHS = frozenset({"m", "mm", "cm", "km", "meter", "meters", "metre", "metres"})
 PLAIN = frozenset({"q", "quat", "quaternion"})
 QUATERNIONS = PLAIN | {"orientation", "orient", "ori", "rotation", "rot", "attitude", "att"}
@@ -93,6 +96,16 @@ def time_rank(name: str) -> int:
     if named:
         return SURE if PATHS.isdisjoint(words(name)) else FRAMED
     return UNKNOWN if units == ["s"] else FRAMED  # "secs" beside "nsecs" is half a time
+
+
+def per_second(name: str) -> int:
+    """Units of a column of times in a second: 10**9 of ``timestamp_ns``; 1 where it names none."""
+    bracketed = re.findall(r"[\[(]([^\[\]()]*)[\])]", name)
+    for word in (*words(name), *(text.strip().lower() for text in bracketed)):
+        found = FRACTION.fullmatch(word)
+        if found:
+            return FRACTIONS.get(found[1], 10**6)
+    return 1
 
 
 def components(names: Sequence[str]) -> list[Component | None]:

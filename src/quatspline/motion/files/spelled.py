@@ -8,7 +8,7 @@ from decimal import Decimal, InvalidOperation
 import numpy as np
 
 from quatspline.inputs.stamps import EXACT
-from quatspline.motion.files.motion import Times
+from quatspline.motion.motion import Times
 from quatspline.quaternion import FloatArray
 
 LARGEST = 2**63 - 1

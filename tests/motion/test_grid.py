@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from quatspline.cli.grid import sample_times
+from quatspline.motion.grid import sample_times
 
 EPOCH = 1_650_000_000_000_000_001
 

@@ -15,15 +15,23 @@ MOST_SAMPLES = 50_000_000
 
 
 def sample_times(
-    first: float | int, last: float | int, rate: float | None, count: int | None
+    first: float | int,
+    last: float | int,
+    rate: float | None,
+    count: int | None,
+    per_second: int = 1,
 ) -> NDArray[Any]:
     """First + k/rate within the domain, or count of them from first to last.
+
+    ``rate`` is per second, of which there are ``per_second`` units of time in one.
 
     Between integers, as the domain of integer stamps has them, times are the nearest whole stamps,
     int64 and exact.  Raises ValueError for too many samples, and for more than there are stamps.
     """
     if isinstance(first, int) and isinstance(last, int):
-        return _stamps(first, last, rate, count)
+        return _stamps(first, last, rate, count, per_second)
+    if rate is not None:
+        rate /= per_second
     return _times(float(first), float(last), rate, count)
 
 
@@ -37,10 +45,14 @@ def _times(first: float, last: float, rate: float | None, count: int | None) -> 
     return np.minimum(first + np.arange(int(steps) + 1) / rate, last)
 
 
-def _stamps(first: int, last: int, rate: float | None, count: int | None) -> NDArray[np.int64]:
+def _stamps(
+    first: int, last: int, rate: float | None, count: int | None, per_second: int
+) -> NDArray[np.int64]:
     span = last - first
     if rate is not None:
-        step = 1 / Fraction(repr(rate))  # the decimal as typed: 1e-7 is no binary fraction
+        step = per_second / Fraction(
+            repr(float(rate))
+        )  # the decimal as typed: 1e-7 is no binary fraction
         steps = int(span / step)
     else:
         steps = (count or 1) - 1

@@ -1,0 +1,77 @@
+"""Closed motions: where files say when the first orientation returns."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from quatspline import quaternion
+from quatspline.keyframes import prepare
+from quatspline.motion.motion import Motion, Times
+from quatspline.quaternion import FloatArray
+
+REPEATED = 1e-6
+"""A last orientation within this angle (rad) of the first is the return of a closed motion."""
+
+NEARLY, SHARE = np.radians(3.0), 0.25
+"""Beyond that, a last orientation this near (rad), by this share of the median step, is ambiguous."""
+
+
+def opened(motion: Motion) -> Motion:
+    """A motion as an open one; raises ValueError where it has a time for its return."""
+    if motion.closed:
+        raise ValueError(
+            f"{len(motion.stamps)} times for {len(motion.quaternions)} quaternions: an open motion has "
+            "one time per keyframe; --closed takes the last time as that of the return"
+        )
+    return motion
+
+
+def returning(motion: Motion) -> Motion:
+    """A motion closed: n keyframes and n + 1 times.
+
+    The last row is the return where it repeats the first orientation (within `REPEATED`) of every
+    track; otherwise uniform times go on for one more step.  A last row that nearly repeats the first
+    is a keyframe like any other, so that none is dropped, and the note says so.  Raises ValueError
+    when neither tells the time of the return.
+    """
+    t, q = motion.stamps, motion.quaternions
+    if motion.closed or len(t) < 2:
+        return motion
+    gap = float(quaternion.distance(*quaternion.normalise(q[[-1, 0]])).max())
+    if gap < REPEATED:
+        return replace(motion, quaternions=q[:-1])
+    near = f"the last row is {np.degrees(gap):.2g} degrees from the first orientation"
+    ambiguous = gap < min(NEARLY, SHARE * _median_step(q))
+    if not prepare(t, q).uniform:
+        raise ValueError(
+            "closed: times are not uniform, so the last row must repeat the first orientation "
+            f"at the time of its return{f'; {near}' if ambiguous else ''}"
+        )
+    note = f"closed: {near}: taken as a keyframe of its own, the return follows one step later"
+    return _one_step_more(motion, note if ambiguous else "")
+
+
+def _one_step_more(motion: Motion, note: str) -> Motion:
+    t, x = motion.stamps, motion.positions
+    end = _one_step_after(t)
+    x = None if x is None else np.concatenate([x, x[:1]])
+    return replace(motion, stamps=np.append(t, np.asarray(end, t.dtype)), positions=x, note=note)
+
+
+def _median_step(q: FloatArray) -> float:
+    """The median over frames of the largest step of a track."""
+    q = quaternion.normalise(q)
+    return float(np.median(quaternion.distance(q[1:], q[:-1]).max(axis=-1)))
+
+
+def _one_step_after(t: Times) -> float | int:
+    """The time after uniform times: of integers, the nearest integer, without rounding to float64."""
+    first, last, steps = t[0].item(), t[-1].item(), len(t) - 1
+    if t.dtype.kind == "f":
+        return first + (last - first) * (len(t) / steps)
+    end = first + (2 * (last - first) * len(t) + steps) // (2 * steps)
+    if end > np.iinfo(t.dtype).max:
+        raise ValueError(f"closed: the return at {end} is beyond 64-bit integers")
+    return end

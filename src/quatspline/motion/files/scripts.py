@@ -1,0 +1,60 @@
+"""Lines of text formats that are made of words: each keeps its number, for what is said of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from quatspline.motion.errors import MotionFileError
+from quatspline.quaternion import FloatArray
+
+Line = tuple[int, list[str]]
+"""The number of a line and its words."""
+
+
+def lines_of(path: Path) -> list[str]:
+    """The lines of a file, however they end."""
+    return path.read_text(encoding="utf-8-sig").split("\n")
+
+
+def refusal(path: Path, number: int, what: object) -> MotionFileError:
+    """A refusal that names the file and the line."""
+    return MotionFileError(f"{path}, line {number}: {what}")
+
+
+def numbers(path: Path, number: int, words: Sequence[str], count: int, what: str) -> FloatArray:
+    """So many finite numbers of a line."""
+    if len(words) != count:
+        raise refusal(path, number, f"{what}: {count} numbers expected, found {len(words)}")
+    return matrix(path, [(number, list(words))])[0]
+
+
+def matrix(path: Path, rows: Sequence[Line]) -> FloatArray:
+    """Rows of as many words each as finite numbers (n, k); the first that is none is refused."""
+    words = [word for _, row in rows for word in row]
+    width = len(rows[0][1]) if rows else 0
+    try:
+        if any("_" in word for word in words):  # float() takes the underscores of Python's literals
+            raise ValueError("_")
+        table = np.array(list(map(float, words))).reshape(len(rows), width)
+    except ValueError:
+        raise _no_number(path, rows) from None
+    if not np.isfinite(table).all():
+        row, column = np.argwhere(~np.isfinite(table))[0].tolist()
+        number, told = rows[row]
+        raise refusal(path, number, f"{told[column]} is not a finite number")
+    return table
+
+
+def _no_number(path: Path, rows: Sequence[Line]) -> MotionFileError:
+    for number, words in rows:
+        for word in words:
+            try:
+                fine = "_" not in word and float(word) is not None
+            except ValueError:
+                fine = False
+            if not fine:
+                return refusal(path, number, f"{word!r} is not a number")
+    raise AssertionError("a row without a fault was refused")
