@@ -1,6 +1,6 @@
 """Interpolating cumulative cubic B-spline of Kim, Kim & Shin (Computer Animation 1995).
 
-Controls d_i are sought whose B-spline (`families.bspline`, (1)) meets the keyframes.  With
+Controls d_i are sought whose B-spline (`fitting.bspline`, (1)) meets the keyframes.  With
 K_i = exp(-m_i w_i) exp(p_i w_{i+1}) the curve at knot i is d_i K_i, so that q_i = d_i K_i means
 
     d_i = q_i K_i^-1,                                                                          (1)

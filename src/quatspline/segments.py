@@ -10,7 +10,6 @@ outside the domain, and hands blocks of samples to the kernels, component first.
 from __future__ import annotations
 
 import threading
-from contextlib import suppress
 from typing import Any, Literal
 
 import numpy as np
@@ -198,13 +197,16 @@ class SegmentCurve(Curve):
 
     def _begin(self, work: float, *kernels: Kernel) -> None:
         """Count work on every track; machine code does it where that repays, or where it is there."""
-        self._work += work * self._keyframes.tracks.shape[0]
+        work *= self._keyframes.tracks.shape[0]
+        self._work += work
+        for kernel in kernels:
+            kernel.work += work
         self._is_compiled = self._is_compiled or engine.compiles(self._work, *kernels)
 
     def _run(self, name: str, *arguments: Any) -> Any:
         """A function of `plain`, or of `native`."""
         if not self._is_compiled:
-            with suppress(*engine.UNFIT):
+            with engine.unfit_suppressed():
                 return getattr(plain, name)(*arguments)
             self._is_compiled = True
         return getattr(engine.native(), name)(*arguments)
@@ -223,8 +225,9 @@ class SegmentCurve(Curve):
         kernel = self.kernels[order]
         if not self._is_compiled:
             self._begin(t.size)
+            kernel.work += t.size * self.segments.shape[0]
             if not self._is_compiled:
-                with suppress(*engine.UNFIT):
+                with engine.unfit_suppressed():
                     return self._evaluate_plainly(t - origin, slack, order, out)
                 self._is_compiled = True
         sample = self._sample or self._compile()

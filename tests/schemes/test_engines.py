@@ -47,6 +47,7 @@ def test_engines_agree(scheme, degrees: float, monkeypatch: pytest.MonkeyPatch) 
             assert curve.engine == name
             at = np.concatenate([inside(curve.times, 3), curve.times])
             values[name] = [curve(at, order) for order in curve.orders]
+            assert curve.engine == name  # nothing made it give up in between
         plain, fast = values["python"], values["compiled"]
         assert (plain is None) == (fast is None)
         for order, (a, b) in enumerate(zip(plain or (), fast or (), strict=True)):
@@ -124,6 +125,27 @@ def test_a_curve_tells_its_engine_and_keeps_it(automatic, monkeypatch) -> None:
     np.testing.assert_allclose(curve(0.5), before, atol=1e-15)
 
 
+def test_many_small_curves_repay_it_too(automatic, monkeypatch) -> None:
+    monkeypatch.setattr(engine, "REPAYS", 3000.0)
+    fresh = family(SIZE, near_point, velocity=velocity, acceleration=acceleration)
+    kernel = fit_kernel(qs.build("slerp", None, walk(4, 30.0)).fit_kernel.python)
+
+    class Small(SegmentCurve):
+        title = reference = "-"
+        continuity, order, support, constant_rate, family = 0, 2, 2, "everywhere", fresh
+
+        def _fit(self, keyframes):
+            self._solve(kernel)
+
+    engines = []
+    for _ in range(40):
+        curve = Small(None, walk(4, 30.0))
+        curve(np.linspace(0.0, 3.0, 100))
+        engines.append(curve.engine)
+    assert engines[0] == "python"
+    assert engines[-1] == "compiled"
+
+
 def test_tables_are_compiled_first(automatic, monkeypatch) -> None:
     def never(*arguments):
         raise AssertionError("plain Python ran")
@@ -151,6 +173,28 @@ def test_what_python_refuses_to_divide_is_compiled(monkeypatch) -> None:
 
     assert engine.run(compiled(inverse), 1, 4.0) == 0.25
     assert engine.run(compiled(inverse), 1, 0.0) == np.inf
+
+
+def test_a_mistake_is_not_compiled_away(monkeypatch) -> None:
+    monkeypatch.setenv(engine.VARIABLE, "python")
+
+    def wrong(x):
+        return np.zeros(3) + np.zeros(4)
+
+    with pytest.raises(ValueError, match="broadcast"):
+        engine.run(compiled(wrong), 1, 1.0)
+
+
+def test_what_plain_python_wrote_before_it_gave_up_is_undone(monkeypatch) -> None:
+    monkeypatch.setenv(engine.VARIABLE, "python")
+
+    def halved(x, y):
+        x[0] = 0.5 * x[0]
+        return x[0] / y
+
+    x = np.array([4.0])
+    assert engine.run(compiled(halved), 1, x, 0.0) == np.inf
+    assert x[0] == 2.0
 
 
 def test_an_unknown_engine_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from quatspline.system.stdout import say
 
@@ -83,6 +83,7 @@ def _lines(table: pd.DataFrame) -> list[str]:
     measured = table[table["failure"].isna()]
     width = int(table["scheme"].str.len().max())
     lines = [f"{'scheme':{width}}  median    worst     largest (degrees at frames left out)"]
+    row: Any
     for row in measured.itertuples():
         median, worst, largest = np.degrees([row.rms_median, row.rms_worst, row.largest])
         where = f"{row.worst_joint}, {row.largest_joint}"

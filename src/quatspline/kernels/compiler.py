@@ -93,7 +93,7 @@ def _cached(function: Callable[..., Any], decorate: Callable[[], Any]) -> Any:
 def cache_folder(source: Path) -> str:
     """The folder for code compiled from a file, named after all sources that take part in it."""
     digest = hashlib.sha256(numba.__version__.encode())
-    for path in sorted(_compiled_from(source)):
+    for path in sorted(compiled_from(source)):
         digest.update(path.read_bytes())
     folder = cache_base() / digest.hexdigest()[:16]
     try:
@@ -103,33 +103,39 @@ def cache_folder(source: Path) -> str:
     return str(folder)
 
 
-def _compiled_from(source: Path) -> set[Path]:
+def compiled_from(source: Path) -> set[Path]:
     """A file and the files of this package that it imports compiled code from, and so on."""
-    package, seen, pending = Path(__file__).parents[1], {Path(__file__), *SHARED}, [source]
+    package, seen, pending = Path(__file__).parents[1], {Path(__file__), *SHARED}, [source, *SHARED]
     while pending:
         path = pending.pop()
         seen.add(path)
         for module in _imported(path.read_text(encoding="utf-8")):
             found = package.joinpath(*today(module).split(".")[1:]).with_suffix(".py")
-            if found not in seen and found.is_file() and COMPILES in found.read_text("utf-8"):
+            apart = found.parent.name not in ROOMS or found.stem in DRIVING
+            if not apart and found not in seen and found.is_file():
                 pending.append(found)
     return seen
 
 
 SHARED = [Path(__file__).with_name(f"{name}.py") for name in ("jit", "values", "loops")]
 """What takes part in all machine code, whatever a source says."""
-COMPILES = "kernels.jit import"
-"""What every source of compiled code says."""
-IMPORT = re.compile(r"^(?:from|import) (quatspline[\w.]*)(?: import \(?([\w\s,]+))?", re.MULTILINE)
+ROOMS = ("kernels", "families", "fitting", "proposed")
+"""Where compiled code stands, besides the file of a scheme ..."""
+DRIVING = {"engine", "plain", "native", "compiler", "driver", "locating", "misses", "intrinsics"}
+"""... and modules of the first room that only drive it."""
+IMPORT = re.compile(
+    r"^(?:from|import)[ \t]+(quatspline[\w.]*)(?:[ \t]+import[ \t]+(\([^)]*\)|[^\n]+))?",
+    re.MULTILINE,
+)
 
 
 def _imported(text: str) -> Iterator[str]:
     """Names of this package's modules that a source imports, and of what may be one."""
     for module, members in IMPORT.findall(text):
         yield module
-        yield from (
-            f"{module}.{member.split()[0]}" for member in members.split(",") if member.strip()
-        )
+        for member in re.sub(r"#[^\n]*", "", members).strip("()").split(","):
+            if member.strip():
+                yield f"{module}.{member.split()[0]}"
 
 
 # -- what numba has to be told -------------------------------------------------------------------

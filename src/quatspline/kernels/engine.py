@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
@@ -24,6 +25,7 @@ import numpy as np
 
 from quatspline.kernels.jit import Compiled, Kernel
 from quatspline.system.caching import cache_base
+from quatspline.system.forking import undivided
 
 VARIABLE = "QUATSPLINE_ENGINE"
 
@@ -36,10 +38,23 @@ LOADS = 1.5e4
 ROW = 0.3
 """Samples that one row of array algebra counts as."""
 
-UNFIT = (ZeroDivisionError, OverflowError, ValueError)
-"""What Python raises where machine code goes on with infinities: such work is compiled."""
+DOMAIN = "math domain error"
+"""What `math` says of a root of less than nothing."""
 
 _always = 0
+
+
+@contextmanager
+def unfit_suppressed() -> Iterator[None]:
+    """Suppress what Python raises where machine code goes on with infinities: that is then compiled."""
+    with np.errstate(all="ignore"):
+        try:
+            yield
+        except (ZeroDivisionError, OverflowError):
+            pass
+        except ValueError as error:
+            if str(error) != DOMAIN:
+                raise
 
 
 @contextmanager
@@ -64,15 +79,19 @@ def compiles(work: float, *kernels: Kernel) -> bool:
     asked = os.environ.get(VARIABLE, "")
     if asked not in ("", "python", "compiled"):
         raise ValueError(f"{VARIABLE}={asked!r}: expected 'python' or 'compiled'")
+    if _always > 0:
+        return True
     if asked:
         return asked == "compiled"
     there = bool(kernels) and all(kernel.address for kernel in kernels)
-    return _always > 0 or there or work >= REPAYS or (work >= LOADS and _is_warm())
+    work = max([work, *(kernel.work for kernel in kernels)])
+    return there or work >= REPAYS or (work >= LOADS and _is_warm())
 
 
 def mark_warm() -> None:
     """Note in the cache that everything was compiled from these sources."""
-    _mark().touch()
+    with suppress(OSError):  # then code was compiled for this process only
+        _mark().touch()
     forget_warm()
 
 
@@ -83,12 +102,14 @@ def forget_warm() -> None:
 
 @cache
 def _is_warm() -> bool:
-    return _mark().exists()
+    with suppress(OSError):
+        return _mark().exists()
+    return False
 
 
 def _mark() -> Path:
     """A file named after the sources of compiled code and numba's version."""
-    digest = hashlib.sha256(version("numba").encode())
+    digest = hashlib.sha256(f"{version('numba')} {sys.implementation.cache_tag}".encode())
     for room in ("kernels", "families", "fitting", "proposed"):
         for path in sorted((Path(__file__).parents[1] / room).glob("*.py")):
             digest.update(path.read_bytes())
@@ -99,9 +120,17 @@ def run(function: Compiled, rows: int, *arguments: Any) -> Any:
     """Call a function, by the engine that it and so many more rows are for."""
     function.work += ROW * rows
     if not compiles(function.work):
-        with suppress(*UNFIT), np.errstate(all="ignore"):
+        before = [array.copy() if _is_written(array) else None for array in arguments]
+        with unfit_suppressed():
             return function.python(*arguments)
+        for array, saved in zip(arguments, before, strict=True):
+            if saved is not None:
+                array[...] = saved
     return machine(function)(*arguments)
+
+
+def _is_written(array: Any) -> bool:
+    return isinstance(array, np.ndarray) and array.flags.writeable
 
 
 def machine(function: Compiled) -> Any:
@@ -114,8 +143,15 @@ def address(kernel: Kernel) -> int:
     return kernel.address or int(native().address(kernel))
 
 
+_native: Any = None
+
+
 def native() -> Any:
     """The module that compiles and drives machine code, with numba: imported when it is first needed."""
-    from quatspline.kernels import native
+    global _native
+    if _native is None:
+        with undivided():  # a fork waits for the import
+            from quatspline.kernels import native as module
 
-    return native
+            _native = module
+    return _native

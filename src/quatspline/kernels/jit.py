@@ -88,6 +88,8 @@ class Kernel:
         self._make, self.kind, self.sample = make, kind, sample
         self.machine: Any = None
         """What the compiler made of it: kept alive, for the address belongs to it."""
+        self.work = 0.0
+        """Samples that plain Python has evaluated or fitted by it, on all curves."""
         self.address = 0
         """Of the machine code, once there is any."""
 

@@ -24,9 +24,8 @@ def fit_tracks(
 ) -> float:
     """Run a fit kernel on every track (K, n, 4); the largest reach that they report."""
     report[:, REACH] = UNREPORTED
-    with np.errstate(all="ignore"):
-        for k, sign in enumerate(signs.tolist()):
-            kernel.python(tracks[k], h, closed, sign, parameters, segments[k], report[k])
+    for k, sign in enumerate(signs.tolist()):
+        kernel.python(tracks[k], h, closed, sign, parameters, segments[k], report[k])
     return float(report[:, REACH].max())
 
 
@@ -39,7 +38,7 @@ def sample(
     out: FloatArray,
 ) -> None:
     """Fill out (m, K, 4 or 3) at times t (m,) since the first keyframe, in segments (m,)."""
-    evaluate = kernel.sample or _by_sheet(kernel)
+    evaluate = kernel.sample or _by_sheet(kernel, out.shape[-1])
     start, stop = knots[segment], knots[segment + 1]
     rates = 1.0 / (stop - start)
     u = np.where(t >= stop, 1.0, (t - start) * rates).tolist()
@@ -73,7 +72,7 @@ def largest_misses(
     return 2.0 * misses
 
 
-def _by_sheet(kernel: Kernel) -> Callable[[list[float], float, float], FloatArray]:
+def _by_sheet(kernel: Kernel, width: int) -> Callable[[list[float], float, float], FloatArray]:
     """One sample of a kernel that is written for blocks."""
     sheet, python = np.zeros((ROWS, BLOCK)), kernel.python
 
@@ -81,6 +80,6 @@ def _by_sheet(kernel: Kernel) -> Callable[[list[float], float, float], FloatArra
         sheet[0, 0], sheet[1, 0] = u, rate
         sheet[CONSTANTS : CONSTANTS + len(c), 0] = c
         python(sheet, 1)
-        return sheet[RESULT:, 0]
+        return sheet[RESULT : RESULT + width, 0]
 
     return evaluate
