@@ -220,7 +220,7 @@ class Motion:
         ConvergenceError
             Where a solver fails on a track, which it names.
         """
-        from quatspline.motion.motion_curve import resampled
+        from quatspline.motion.resampling import resampled
 
         return resampled(self, rate, scheme, times, positions, options)
 
@@ -259,5 +259,9 @@ def _check_shapes(motion: Motion) -> None:
         raise ValueError(
             f"the skeleton has {len(motion.skeleton.parents)} joints for {tracks} tracks"
         )
+    for name in ("in_tangents", "out_tangents"):
+        tangents = getattr(motion, name)
+        if tangents is not None and np.shape(tangents) != q.shape:
+            raise ValueError(f"{name} has shape {np.shape(tangents)}: expected {q.shape}")
     if x is not None and x.shape != (n, tracks, 3):
         raise ValueError(f"positions has shape {x.shape}: expected ({n}, {tracks}, 3)")
