@@ -253,6 +253,9 @@ def _check_shapes(motion: Motion) -> None:
         raise ValueError(
             f"quaternions has shape {q.shape}: expected ({n}, {tracks}, 4) for {n} stamps, {tracks} tracks"
         )
+    if len(set(motion.tracks)) < tracks:
+        again = next(name for name in motion.tracks if list(motion.tracks).count(name) > 1)
+        raise ValueError(f"tracks: two are called {again!r}")
     if motion.per_second not in UNITS:
         raise ValueError(f"per_second = {motion.per_second}: one of {UNITS} is expected")
     if motion.skeleton is not None and len(motion.skeleton.parents) != tracks:
