@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from quatspline.system.stdout import say
 
@@ -83,12 +83,10 @@ def _lines(table: pd.DataFrame) -> list[str]:
     measured = table[table["failure"].isna()]
     width = int(table["scheme"].str.len().max())
     lines = [f"{'scheme':{width}}  median    worst     largest (degrees at frames left out)"]
-    row: Any
-    for row in measured.itertuples():
-        median, worst, largest = np.degrees([row.rms_median, row.rms_worst, row.largest])
-        where = f"{row.worst_joint}, {row.largest_joint}"
-        lines.append(
-            f"{row.scheme:{width}}  {median:<8.4g}  {worst:<8.4g}  {largest:<8.4g} {where}"
-        )
-    lost = table[table["failure"].notna()]
-    return lines + [f"{row.scheme:{width}}  n/a: {row.failure}" for row in lost.itertuples()]
+    for row in measured.to_dict("records"):
+        angles = [np.degrees(row[name]) for name in ("rms_median", "rms_worst", "largest")]
+        told = "  ".join(f"{angle:<8.4g}" for angle in angles)
+        where = f"{row['worst_joint']}, {row['largest_joint']}"
+        lines.append(f"{row['scheme']:{width}}  {told} {where}")
+    lost = table[table["failure"].notna()].to_dict("records")
+    return lines + [f"{row['scheme']:{width}}  n/a: {row['failure']}" for row in lost]

@@ -13,7 +13,7 @@ import numpy as np
 from quatspline.cli.notes import naming_file, note, noted
 from quatspline.motion import closing, files
 from quatspline.motion.files import Reading
-from quatspline.motion.motion_curve import grid, sampled, stamps_since
+from quatspline.motion.resampling import grid, sampled, stamps_since
 from quatspline.system.atomic import naming, same_file
 from quatspline.system.stdout import STDOUT, say
 

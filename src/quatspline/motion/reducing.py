@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quatspline import catalogue, quaternion
-from quatspline.motion.motion_curve import named
+from quatspline.motion.resampling import named
 from quatspline.options import among
 from quatspline.quaternion import FloatArray
 from quatspline.solving import ConvergenceError

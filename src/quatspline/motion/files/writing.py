@@ -88,6 +88,11 @@ def write_npz(path: Path, motion: Motion) -> None:
         arrays["unit"] = np.array(motion.unit)
     if motion.per_second != 1:
         arrays["per_second"] = np.array(motion.per_second)
+    if motion.interpolation is not None:
+        arrays["interpolation"] = np.array(motion.interpolation)
+    for name in ("in_tangents", "out_tangents"):
+        if getattr(motion, name) is not None:
+            arrays[name] = getattr(motion, name)
     if motion.skeleton is not None:
         arrays |= _bones(motion.skeleton)
     with path.open("wb") as stream:  # given a name, savez would add a suffix
