@@ -332,6 +332,16 @@ thread.join(60)
             "lock.acquire()",
         ),
         (
+            "import sys, time, quatspline as qs\n"
+            "keys = [[1, 0, 0, 0], [0.8, 0.6, 0, 0], [0, 0.6, 0.8, 0], [0, 0, 1, 0]]\n"
+            "os.environ['QUATSPLINE_ENGINE'] = 'compiled'\n"
+            "thread = threading.Thread(target=lambda: qs.build('slerp', None, keys))\n"
+            "thread.start()\n"
+            "while 'numba' not in sys.modules: time.sleep(0.001)\n"
+            "gate.entered.set(); gate.go.set()",
+            "os._exit(0 if qs.build('slerp', None, keys)(0.5).shape == (4,) else 3)",
+        ),
+        (
             "from quatspline.system.quiet import quiet\n"
             "def peer():\n    with quiet():\n        gate.entered.set(); gate.go.wait(60)\n"
             "thread = threading.Thread(target=peer)\n"
@@ -339,7 +349,7 @@ thread.join(60)
             "with quiet(): pass",
         ),
     ],
-    ids=["an import", "a compilation", "a peer"],
+    ids=["an import", "a compilation", "a first compilation", "a peer"],
 )
 def test_a_forked_child_waits_for_no_thread_it_lacks(
     folder: Path, prepared: str, asked: str
