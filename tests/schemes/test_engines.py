@@ -13,7 +13,7 @@ from processes import environment
 from quatspline.comparing import compare
 from quatspline.families.arcs import SIZE, acceleration, near_point, velocity
 from quatspline.kernels import engine, plain
-from quatspline.kernels.family import family
+from quatspline.kernels.family import family as made_family
 from quatspline.kernels.jit import compiled, fit_kernel
 from quatspline.segments import SegmentCurve
 from walks import applies, count_of, inside, knots_of, walk
@@ -103,19 +103,25 @@ def test_an_answer_needs_no_compiler_and_work_that_repays_it_gets_one() -> None:
     assert done.stdout.split() == ["python", "False", "compiled", "True", "compiled"]
 
 
-def test_a_curve_tells_its_engine_and_keeps_it(automatic, monkeypatch) -> None:
-    """Of a family that nothing has compiled, at a twenty-fifth of the work."""
-    monkeypatch.setattr(engine, "REPAYS", 4000.0)
-    fresh = family(SIZE, near_point, velocity=velocity, acceleration=acceleration)
+def fresh_scheme() -> type[SegmentCurve]:
+    """Slerp with kernels that nothing has compiled."""
     kernel = fit_kernel(qs.build("slerp", None, walk(4, 30.0)).fit_kernel.python)
 
     class Fresh(SegmentCurve):
         title = reference = "-"
-        continuity, order, support, constant_rate, family = 0, 2, 2, "everywhere", fresh
+        continuity, order, support, constant_rate = 0, 2, 2, "everywhere"
+        family = made_family(SIZE, near_point, velocity=velocity, acceleration=acceleration)
 
         def _fit(self, keyframes):
             self._solve(kernel)
 
+    return Fresh
+
+
+def test_a_curve_tells_its_engine_and_keeps_it(automatic, monkeypatch) -> None:
+    """At a twenty-fifth of the work."""
+    monkeypatch.setattr(engine, "REPAYS", 4000.0)
+    Fresh = fresh_scheme()
     curve = Fresh(None, walk(4, 30.0))
     assert curve.engine == "python"
     before = curve(0.5)
@@ -127,16 +133,7 @@ def test_a_curve_tells_its_engine_and_keeps_it(automatic, monkeypatch) -> None:
 
 def test_many_small_curves_repay_it_too(automatic, monkeypatch) -> None:
     monkeypatch.setattr(engine, "REPAYS", 3000.0)
-    fresh = family(SIZE, near_point, velocity=velocity, acceleration=acceleration)
-    kernel = fit_kernel(qs.build("slerp", None, walk(4, 30.0)).fit_kernel.python)
-
-    class Small(SegmentCurve):
-        title = reference = "-"
-        continuity, order, support, constant_rate, family = 0, 2, 2, "everywhere", fresh
-
-        def _fit(self, keyframes):
-            self._solve(kernel)
-
+    Small = fresh_scheme()
     engines = []
     for _ in range(40):
         curve = Small(None, walk(4, 30.0))
