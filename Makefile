@@ -6,6 +6,7 @@ RUN := $(BIN)/python -m quatspline
 PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check install --constraint requirements.lock
 QUICK ?=
 NAME ?=
+COMPILED ?=
 TASK ?=
 
 .DEFAULT_GOAL := help
@@ -21,7 +22,7 @@ $(VENV)/run: pyproject.toml requirements.lock
 	@echo "installing into $(VENV) ..."
 	@$(PIP) --editable .
 	@$(PIP) --editable '.[peers]' || echo "some third-party schemes could not be installed: their rows will read n/a"
-	@$(BIN)/python -m quatspline.runs.warmup
+	@$(RUN) warmup
 	@touch $@
 
 $(VENV)/test: $(VENV)/run
@@ -58,8 +59,8 @@ lint: $(VENV)/test ## Lint, format check, type check, and imports against archit
 format: $(VENV)/test ## Format the sources
 	@$(BIN)/ruff check --quiet --fix . ; $(BIN)/ruff format --quiet .
 
-new-baseline: $(VENV)/run ## Write a working template: NAME=my_scheme
-	@$(BIN)/python -m tools.new_scheme '$(NAME)'
+new-baseline: $(VENV)/run ## Write a working template: NAME=my_scheme (COMPILED=1: with a compiled family)
+	@$(BIN)/python -m tools.new_scheme '$(NAME)' $(if $(COMPILED),--compiled)
 
 check-baseline: $(VENV)/test ## Conformance and claims of one scheme: NAME=my_scheme
 	@$(BIN)/python -m pytest -q tests/schemes/test_conformance.py tests/schemes/test_claims.py --scheme '$(NAME)'

@@ -7,7 +7,6 @@ from functools import cache
 from typing import Annotated
 
 import numpy as np
-from numba import carray
 
 from quatspline.families.chords import SIZE as CHORD
 from quatspline.families.chords import (
@@ -19,13 +18,12 @@ from quatspline.families.chords import (
 )
 from quatspline.kernels.family import Family
 from quatspline.kernels.jit import (
-    BLOCK,
     CONSTANTS,
     REACH,
     RESULT,
-    ROWS,
     fit_kernel,
     inlined,
+    rows_of,
     sample_kernel,
 )
 from quatspline.kernels.operations import Operations, Per
@@ -74,7 +72,7 @@ def _nest(s, n, order):
 @sample_kernel
 def ORIENTATION(sheet, n):
     """(1)."""
-    s = carray(sheet, (ROWS, BLOCK))
+    s = rows_of(sheet)
     _nest(s, n, 0)
     for j in range(n):
         u, f, g = s[0, j], s[_F, j], s[_G, j]
@@ -84,7 +82,7 @@ def ORIENTATION(sheet, n):
 @sample_kernel
 def VELOCITY(sheet, n):
     """The exact omega of (1)."""
-    s = carray(sheet, (ROWS, BLOCK))
+    s = rows_of(sheet)
     _nest(s, n, 1)
     for j in range(n):
         u, f, f1, g, g1 = s[0, j], s[_F, j], s[_F + 1, j], s[_G, j], s[_G + 1, j]
@@ -96,7 +94,7 @@ def VELOCITY(sheet, n):
 @sample_kernel
 def ACCELERATION(sheet, n):
     """The exact alpha of (1): near zero, as slerp's."""
-    s = carray(sheet, (ROWS, BLOCK))
+    s = rows_of(sheet)
     _nest(s, n, 2)
     for j in range(n):
         u, f, f1, f2 = s[0, j], s[_F, j], s[_F + 1, j], s[_F + 2, j]

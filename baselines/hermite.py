@@ -32,8 +32,9 @@ class Hermite(SegmentCurve):
         w_1 = h v_i / 3,  w_3 = h v_{i+1} / 3,
         w_2 = ln(exp(-w_1) q_i^-1 q_{i+1} exp(-w_3))                                             (3)
 
-    The velocities v_i at keyframes are slopes of the polynomial through 3 or 5 points in the
-    logarithmic chart there [kim1995general].
+    with u from 0 to 1 on a segment of duration h.  The velocities v_i, half rotation vectors per
+    unit of time, are slopes of the polynomial through 3 or 5 points in the logarithmic chart at q_i
+    (`fitting.tangents` (1)) [kim1995general].
 
     Options
     -------
@@ -67,15 +68,16 @@ class Hermite(SegmentCurve):
 
 @fit_kernel
 def FIT(q, h, closed, sign, parameters, segments, report):
-    """The factors of (1); parameters: window, ends."""
+    """q_i, and the factors exp(b_k w_k) of (1), k = 1, 2, 3; parameters: window, ends."""
     v = chart_velocities(q, h, closed, sign, int(parameters[0]), parameters[1])
     reach = 0.0
     for i in range(h.size):
-        p, r, c = keyframe(q, i, sign), keyframe(q, i + 1, sign), segments[i]
-        w1 = (h[i] / 3.0) * vec_at(v[i], 0)
-        w3 = (h[i] / 3.0) * vec_at(v[(i + 1) % q.shape[0]], 0)
+        p, r, c = keyframe(q, i, sign), keyframe(q, i + 1, sign), segments[i]  # q_i, q_{i+1}
+        # A velocity is the same of q and -q: v_{i+1} wraps without the sign.
+        w1 = (h[i] / 3.0) * vec_at(v[i], 0)  # (3)
+        w3 = (h[i] / 3.0) * vec_at(v[(i + 1) % q.shape[0]], 0)  # (3)
         w2 = log(~(p * exp(w1)) * r * exp(-w3))  # (3)
-        set_base(c, p)
+        set_base(c, p)  # (1), and what the half angles |b_k w_k| may reach:
         r1, r2, r3 = set_factor(c, 0, w1, B1), set_factor(c, 1, w2, B2), set_factor(c, 2, w3, B3)
         reach = max(reach, r1, r2, r3)
-    report[REACH] = reach
+    report[REACH] = reach  # the largest half angle: which sines the family takes

@@ -9,7 +9,6 @@ from typing import Annotated
 import numpy as np
 
 from quatspline.families.arcs import ARC, SIZE, set_arc
-from quatspline.kernels.driver import fit_tracks
 from quatspline.kernels.jit import REACH, fit_kernel
 from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import exp, keyframe, log, norm, unit
@@ -66,16 +65,8 @@ class IncrementalSlerp(SegmentCurve):
             )
         segments = np.empty((tracks.shape[0], h.size * steps, SIZE))
         report = np.zeros((tracks.shape[0], 4))
-        reach = fit_tracks(
-            FIT.address,
-            tracks,
-            h,
-            keyframes.closed,
-            keyframes.signs,
-            self.parameters,
-            segments,
-            report,
-        )
+        self._begin(h.size * steps, FIT)
+        reach = self._fit_rows(tracks, h, keyframes.closed, segments, report)
         # Every step is a segment of its own.
         knots = np.append(keyframes.inside(np.arange(steps) / steps), keyframes.knots[-1])
         if (np.diff(knots) <= 0.0).any():

@@ -1,6 +1,6 @@
 """Interpolating cumulative cubic B-spline of Kim, Kim & Shin (Computer Animation 1995).
 
-Controls d_i are sought whose B-spline (`families.bspline`, (1)) meets the keyframes.  With
+Controls d_i are sought whose B-spline (`fitting.bspline`, (1)) meets the keyframes.  With
 K_i = exp(-m_i w_i) exp(p_i w_{i+1}) the curve at knot i is d_i K_i, so that q_i = d_i K_i means
 
     d_i = q_i K_i^-1,                                                                          (1)
@@ -34,10 +34,9 @@ from quatspline.fitting.bspline_newton import copy, descend, moved, newton, sett
 from quatspline.inputs.arrays import at, real_array, refuse_infinite
 from quatspline.kernels.jit import CHANGE, ITERATIONS, REACH, RESIDUAL, compiled, fit_kernel
 from quatspline.kernels.operations import Operations, Per
+from quatspline.kernels.quick import exp, log
 from quatspline.kernels.values import (
-    exp,
     keyframe,
-    log,
     put_quat_column,
     put_vec_column,
     quat_at,
@@ -110,9 +109,7 @@ def pose(q, h, sign, clamped, w):
 
 @compiled
 def set_ends(q, h, parameters, w):
-    """Increments h v / 3 to a clamped curve's outer controls, v being half the given angular
-    velocities or the chart's estimates.
-    """
+    """Increments h v / 3 to a clamped curve's outer controls, v given (halved) or estimated."""
     for side in range(2):
         v = 0.5 * vec_at(parameters, VELOCITIES + 3 * side)
         if parameters[HAS_START + side] == 0.0:

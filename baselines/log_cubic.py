@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from quatspline import quaternion
 from quatspline.families.rotation_vector import PHI, Q0, ROTATION_VECTOR
@@ -52,6 +51,8 @@ class LogCubicSpline(SegmentCurve):
         reference: int = 0,
         ends: Literal["natural", "not-a-knot"] = "natural",
     ) -> None:
+        from scipy.interpolate import CubicSpline  # slow to import: others need not wait
+
         q, h = np.moveaxis(keyframes.tracks, 1, 0), keyframes.spacings
         if not 0 <= reference < len(q):
             raise ValueError(f"reference={reference}: the keyframes are 0 to {len(q) - 1}")
@@ -68,7 +69,7 @@ class LogCubicSpline(SegmentCurve):
         segments = np.zeros((len(base), h.size, self.family.constants))
         segments[:, :, Q0:PHI] = base[:, None]
         phi = segments[:, :, PHI:].reshape(*segments.shape[:2], 3, 6)
-        constants = np.array([x[:-1], x[1:] - x[:-1], -c[2] - c[3], -c[3]])  # `quintics` (1)
+        constants = np.array([x[:-1], x[1:] - x[:-1], -c[2] - c[3], -c[3]])  # `polynomials` (1)
         phi[..., :4] = np.moveaxis(constants, (0, 1, 2, 3), (3, 1, 0, 2))
         # Bernstein coefficients bound |phi|
         hull = c[0], c[0] + c[1] / 3, c[0] + (2 * c[1] + c[2]) / 3, c.sum(axis=0)

@@ -8,12 +8,16 @@ import numpy as np
 
 from quatspline.families.rotation_vector import ROTATION_VECTOR
 from quatspline.fitting.least_torque import minimise
+from quatspline.kernels import engine
 from quatspline.kernels.jit import REACH
 from quatspline.kernels.operations import Operations, Per
 from quatspline.keyframes import Keyframes
 from quatspline.options import AtMost, Count, OnFailure, Positive
 from quatspline.proposed.local_quintic import LocalQuinticSpline
 from quatspline.segments import SegmentCurve
+
+ROWS = 8000
+"""Rows of array algebra that an iteration's work on one node counts as, see `engine.run`."""
 
 HIT = 1e-9
 """Largest miss at a keyframe in rad, where the tolerance is less: keyframes are nodes, so that a miss
@@ -78,8 +82,9 @@ class MinimumTorqueSpline(SegmentCurve):
         segments = np.empty((len(tracks), h.size, self.family.constants))
         report = np.zeros((len(tracks), 4))
         # E of every track, rad^2 / time^3, and which came to rest at rounding
-        self.energy, rest = minimise(
-            nodes, rates, h, m, tolerance, max_iterations, segments, report
+        work = ROWS * nodes.shape[0] * h.size
+        self.energy, rest = engine.run(
+            minimise, work, nodes, rates, h, m, tolerance, max_iterations, segments, report
         )
         self._set_segments(segments, report[:, REACH].max(), knots)
         self._report(

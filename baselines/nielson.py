@@ -67,7 +67,7 @@ class Nielson(SegmentCurve):
         "natural", or "stationary": zero phantom spacings, so that the curve starts and stops at rest.
     method
         "jacobi" (as published: all d_i from the last set), "gauss-seidel" (the newest at once), or
-        "newton" (`families.nu_newton`): the same curve in 3 to 6 updates, also where the others fail.
+        "newton" (`fitting.nu_newton`): the same curve in 3 to 6 updates, also where the others fail.
     stop, tolerance, max_iterations, on_failure
         As for every iterative scheme.
     """

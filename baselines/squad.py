@@ -26,11 +26,13 @@ class Squad(SegmentCurve):
 
         Q(u) = slerp(slerp(q_i, q_{i+1}; u), slerp(a_i^+, a_{i+1}^-; u); 2u(1 - u))              (1)
 
-    leaves with velocity (L_i + 2 ln(q_i^-1 a_i^+))/h_i (log units): v_i and v_{i+1} are met by
+    with L_i = ln(q_i^-1 q_{i+1}), half a rotation vector, on a segment of duration h_i.  It leaves
+    with velocity (L_i + 2 ln(q_i^-1 a_i^+))/h_i: v_i and v_{i+1} are met by
 
         a_i^+ = q_i exp((h_i v_i - L_i)/2),    a_{i+1}^- = q_{i+1} exp((L_i - h_i v_{i+1})/2)    (2)
 
-    with v_i the slope of the parabola through three keyframes in the chart at q_i [shoemake1987].
+    with v_i the slope of the parabola through three keyframes in the chart at q_i
+    (`fitting.tangents` (1)) [shoemake1987].
 
     Options
     -------
@@ -39,7 +41,7 @@ class Squad(SegmentCurve):
         v_i = (L_{i-1} + L_i)/(h_{i-1} + h_i): C^1, but order 2 on non-uniform knots.  "textbook":
         the published a_i = q_i exp((L_{i-1} - L_i)/4), which knows no times: C^0 on such knots.
     ends
-        "chart": the parabola through the end's three keyframes; "secant": v_0 = s_0, the published
+        "chart": the parabola through the end's three keyframes; "secant": v_0 = L_0 / h_0, the published
         a_0 = q_0.  Default: "chart" with two-a, "secant" with the others.
     """
 
@@ -68,16 +70,16 @@ class Squad(SegmentCurve):
 
 @compiled
 def _pull(q, h, sign, i, textbook, v):
-    """ln(q_i^-1 a_i) of the single points, as the velocities v[0] after and v[1] before keyframe i.
+    """The velocities v[0] after and v[1] before keyframe i by which (2) gives the single point
 
-    a_i = q_i exp((h_i L_{i-1} - h_{i-1} L_i) / (2 (h_{i-1} + h_i))); the textbook takes h = 1.
+    a_i = q_i exp((h_i L_{i-1} - h_{i-1} L_i) / (2 (h_{i-1} + h_i))); the textbook takes h = 1.      (3)
     """
-    a, b = step(q, i - 1, i, sign), step(q, i, i + 1, sign)
+    l0, l1 = step(q, i - 1, i, sign), step(q, i, i + 1, sign)  # L_{i-1}, L_i
     h0, h1 = h[(i - 1) % h.size], h[i]
-    s0, s1 = (1.0, 1.0) if textbook else (h0, h1)
-    pull = (1.0 / (s0 + s1)) * (s1 * a - s0 * b)
-    put_vec(v[0], 0, (1.0 / h1) * (b + pull))
-    put_vec(v[1], 0, (1.0 / h0) * (a - pull))
+    k0, k1 = (1.0, 1.0) if textbook else (h0, h1)
+    pull = (1.0 / (k0 + k1)) * (k1 * l0 - k0 * l1)  # (3): 2 ln(q_i^-1 a_i)
+    put_vec(v[0], 0, (1.0 / h1) * (l1 + pull))  # (2) for a_i^+, solved for v_i
+    put_vec(v[1], 0, (1.0 / h0) * (l0 - pull))  # (2) for a_i^-
 
 
 @fit_kernel
@@ -85,7 +87,7 @@ def FIT(q, h, closed, sign, parameters, segments, report):
     """The two arcs of (1) by (2); parameters: inner, ends."""
     n, inner = q.shape[0], parameters[0]
     slopes = chart_velocities(q, h, closed, sign, 3, parameters[1])
-    v = np.empty((n, 2, 3))
+    v = np.empty((n, 2, 3))  # v_i after and before every keyframe
     for i in range(n):
         v[i, 0], v[i, 1] = slopes[i], slopes[i]
         if inner != TWO_A and (closed or 0 < i < n - 1):
@@ -93,8 +95,9 @@ def FIT(q, h, closed, sign, parameters, segments, report):
     reach = 0.0
     for i in range(h.size):
         p, r = keyframe(q, i, sign), keyframe(q, i + 1, sign)
-        l = log(~p * r)
-        a = p * exp(0.5 * (h[i] * vec_at(v[i, 0], 0) - l))  # (2)
-        b = r * exp(0.5 * (l - h[i] * vec_at(v[(i + 1) % n, 1], 0)))
+        l = log(~p * r)  # L_i, from p = q_i to r = q_{i+1}
+        a = p * exp(0.5 * (h[i] * vec_at(v[i, 0], 0) - l))  # (2): a_i^+
+        b = r * exp(0.5 * (l - h[i] * vec_at(v[(i + 1) % n, 1], 0)))  # (2): a_{i+1}^-
+        # (1): slerp(p, r; u) and slerp(a, b; u); the family blends them.
         reach = max(reach, set_arc(segments[i], 0, p, r), set_arc(segments[i], ARC, a, b))
-    report[REACH] = reach
+    report[REACH] = reach  # the largest half angle: which sines the family takes

@@ -1,4 +1,4 @@
-"""Polynomials as segments keep them (`families.quintics`), and by powers of u, as papers print them."""
+"""Polynomials as segments keep them (`families.polynomials`), and by powers of u, as papers print them."""
 
 import numpy as np
 

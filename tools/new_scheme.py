@@ -1,4 +1,4 @@
-"""A new scheme from the template: ``python -m tools.new_scheme NAME [FOLDER]``."""
+"""A new scheme from a template: ``python -m tools.new_scheme NAME [FOLDER] [--compiled]``."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from pathlib import Path
 
 from quatspline.catalogue import PACKAGE, found, shipped
 
-TEMPLATE = "_template.py"
+TEMPLATE, COMPILED = "_template.py", "_template_compiled.py"
 NAME = re.compile(r"[a-z][a-z0-9]*([_-][a-z0-9]+)*", re.IGNORECASE)
 
 
-def new_scheme(name: str, folder: Path) -> Path:
-    """Write the template as a scheme of its own into a folder; returns the file.
+def new_scheme(name: str, folder: Path, template: str = TEMPLATE) -> Path:
+    """Write a template as a scheme of its own into a folder; returns the file.
 
     Raises
     ------
@@ -29,7 +29,7 @@ def new_scheme(name: str, folder: Path) -> Path:
     if key in found():
         raise ValueError(f"{key!r} is there already: {found()[key].origin}")
     path = folder / f"{stem}.py"
-    text = (shipped("baselines") / TEMPLATE).read_text(encoding="utf-8")
+    text = (shipped("baselines") / template).read_text(encoding="utf-8")
     for old, new in {
         "class Template(": f"class {''.join(part.capitalize() for part in stem.split('_'))}(",
         '"Template"': f'"{key.replace("-", " ").capitalize()}"',
@@ -54,9 +54,13 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m tools.new_scheme", description=__doc__)
     parser.add_argument("name", help="the new scheme: my_scheme or my-scheme")
     parser.add_argument("folder", nargs="?", type=Path, help="where to (default: baselines/)")
+    parser.add_argument(
+        "--compiled", action="store_true", help="with a family and a fit of its own"
+    )
     given = parser.parse_args(arguments)
+    template = COMPILED if given.compiled else TEMPLATE
     try:
-        path = new_scheme(given.name, given.folder or default_folder())
+        path = new_scheme(given.name, given.folder or default_folder(), template)
     except ValueError as refusal:
         print(f"scaffold: {refusal}", file=sys.stderr)
         return 2

@@ -18,6 +18,7 @@ from quatspline.instruments.continuity import jumps, measured_continuity, roundi
 from quatspline.instruments.fairness import fairness
 from quatspline.instruments.rescue import solved
 from quatspline.instruments.trials import Row, attempted, facts
+from quatspline.kernels.engine import always_compiled
 from quatspline.keyframes import Keyframes
 from quatspline.options import among
 from quatspline.runs.experiment import Run
@@ -86,8 +87,8 @@ def compare(
     >>> table.set_index("scheme")["continuity"].to_dict()
     {'quartic': 2, 'slerp': 0}
     """
-    keyframes = prepared(times, quaternions, closed)
-    return compared(keyframes, schemes)[0]
+    with always_compiled():
+        return compared(prepared(times, quaternions, closed), schemes)[0]
 
 
 def prepared(times: ArrayLike | None, quaternions: ArrayLike, closed: bool) -> Keyframes:

@@ -13,6 +13,7 @@ from quatspline.inputs import stamps
 from quatspline.inputs.arrays import IntArray, at, float_array, refuse_infinite, switch
 from quatspline.inputs.orientations import directions, explain_norms, orientations
 from quatspline.inputs.spacings import DIGITS, LONGEST, SHORTEST, explain_times
+from quatspline.kernels import engine
 from quatspline.kernels.jit import compiled
 from quatspline.quaternion import ANTIPODAL, FLIP, FloatArray
 
@@ -179,7 +180,9 @@ def prepare(
     track_shape = q.shape[1:-1]
     rows = q.reshape(n, -1, 4)
     tracks, signs = np.empty((rows.shape[1], n, 4)), np.empty(rows.shape[1])
-    if not _take(rows, align, closed, float(closing_sign or 1), tracks, signs):
+    if not engine.run(
+        _take, rows.size // 4, rows, align, closed, float(closing_sign or 1), tracks, signs
+    ):
         explain_norms(q, NORM_TOLERANCE)
     keyframes = Keyframes(t, knots, spacings, tracks, track_shape, closed, signs, digits)
     if not align:
@@ -233,7 +236,7 @@ def _times(
     knots, spacings = np.empty(t.size), np.empty(t.size - 1)
     plain = t.dtype == np.float64
     since = t if plain else float_array("times", stamps.elapsed(t, t[0]))
-    if not _space(since, t[0] if plain else 0.0, knots, spacings):
+    if not engine.run(_space, t.size, since, t[0] if plain else 0.0, knots, spacings):
         explain_times(t, knots, spacings)
     return t.copy(), knots, spacings, kind
 

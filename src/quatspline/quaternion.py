@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from quatspline.inputs.arrays import FloatArray
-from quatspline.kernels import jacobians, values
+from quatspline.kernels import engine, jacobians, values
 from quatspline.kernels.jit import compiled, inlined
 from quatspline.kernels.scalars import TINY
 from quatspline.kernels.values import (
@@ -219,7 +219,7 @@ def _apply(loop: Any, *arguments: tuple[ArrayLike, int], width: int) -> FloatArr
         for a in arrays
     ]
     out = np.empty((rows[0].shape[0], max(width, 1)))
-    loop(*rows, out)
+    engine.run(loop, out.shape[0], *rows, out)
     return out.reshape((*lead, width) if width else lead)
 
 

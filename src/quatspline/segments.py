@@ -1,28 +1,26 @@
-"""SegmentCurve: curves that are one row of constants a segment, evaluated by compiled kernels.
+"""SegmentCurve: curves that are one row of constants a segment, in plain Python or compiled.
 
 A scheme of this kind supplies a fit kernel (keyframes -> constants) or computes the constants
-itself, and names the family whose sample kernels evaluate them.  One compiled driver
-(`families.driver`) does the rest for all: it finds the segments, wraps closed curves, refuses times
-outside the domain, and hands blocks of samples to the kernels, component first.
+itself, and names the family whose functions evaluate them.  What is compiled, one driver
+(`kernels.driver`) does for all: it finds the segments, wraps closed curves, refuses times
+outside the domain, and hands blocks of samples to the kernels, component first.  Before that,
+`kernels.plain` does the same one sample at a time (see `kernels.engine`).
 """
 
 from __future__ import annotations
 
 import threading
-from concurrent.futures import ThreadPoolExecutor
-from functools import partial
-from itertools import pairwise
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from quatspline.curve import Curve
 from quatspline.inputs.arrays import BoolArray, FloatArray
-from quatspline.kernels.driver import described, fit_tracks, sample
+from quatspline.kernels import engine, plain
 from quatspline.kernels.family import Family
-from quatspline.kernels.jit import CHANGE, ITERATIONS, RESIDUAL, UNREPORTED, Kernel
-from quatspline.kernels.misses import largest_misses
+from quatspline.kernels.jit import CHANGE, ITERATIONS, REACH, RESIDUAL, UNREPORTED, Kernel
 from quatspline.kernels.scalars import NEAR
+from quatspline.keyframes import segment_of
 from quatspline.solving import WRONG_FIXED_POINT, SolveReport
 
 CHUNK = 4096
@@ -32,6 +30,9 @@ LAZY = 4 * CHUNK
 
 THREAD_MINIMUM = 20_000
 """Samples that make a further thread worth its start."""
+
+FITTED, ITERATED = 4.0, 40.0
+"""Samples that the fit of a segment counts as, at once and by an iteration."""
 
 
 class SegmentCurve(Curve):
@@ -44,6 +45,15 @@ class SegmentCurve(Curve):
     _waiting: BoolArray | None = None
     """While a long curve is not wholly fitted: which chunks wait."""
     _fitting: threading.Lock
+    _work = 0.0
+    """What was done for it in plain Python, in samples; machine code from `engine.REPAYS` on."""
+    _sample: Any = None
+    """The compiled driver, once this curve is compiled."""
+
+    @property
+    def engine(self) -> Literal["python", "compiled"]:
+        """What evaluates it: plain Python at first, machine code once that repays compiling."""
+        return "compiled" if self._is_compiled else "python"
 
     def _solve(
         self, kernel: Kernel, parameters: FloatArray | None = None, *, whole: bool = False
@@ -55,6 +65,7 @@ class SegmentCurve(Curve):
         """
         frames = self._keyframes
         self.fit_kernel = kernel
+        self._begin(frames.spacings.size * (ITERATED if self.iterative else FITTED), kernel)
         self.parameters = (
             np.zeros(1) if parameters is None else np.ascontiguousarray(parameters, float)
         )
@@ -81,11 +92,9 @@ class SegmentCurve(Curve):
         segments: FloatArray,
         report: FloatArray,
     ) -> float:
-        signs = self._keyframes.signs
-        reach: float = fit_tracks(
-            self.fit_kernel.address, tracks, h, closed, signs, self.parameters, segments, report
-        )
-        if reach == UNREPORTED:
+        given = self._keyframes.signs, self.parameters, segments, report
+        reach: float = self._run("fit_tracks", self.fit_kernel, tracks, h, closed, *given)
+        if (report[:, REACH] == UNREPORTED).any():  # of one track, the largest reach would hide it
             raise TypeError(f"{self.name}: its fit kernel does not write report[REACH]")
         return reach
 
@@ -136,8 +145,9 @@ class SegmentCurve(Curve):
         shape = frames.tracks.shape[0], self.segment_knots.size - 1, self.family.constants
         if segments.shape != shape:  # kernels read by address: a wrong shape would read elsewhere
             raise ValueError(f"segments has shape {segments.shape}: expected {shape}")
-        self.described = described(self.segment_knots, segments, frames.signs, frames.closed)
         self.kernels = self.family.near if reach <= NEAR else self.family.far
+        self._begin(0.0, self.kernels[0])
+        self._sample = None  # it was told where other constants are
 
     def _report(
         self,
@@ -175,17 +185,31 @@ class SegmentCurve(Curve):
         self._conclude(solved, on_failure)
 
     def _misses(self) -> FloatArray:
-        """What the constants miss at keyframes, (K,) in rad; `families.misses`."""
+        """What the constants miss at keyframes, (K,) in rad."""
         frames = self._keyframes
-        misses: FloatArray = largest_misses(
-            self.kernels[0].address,
-            self.segment_knots,
-            self.segments,
-            frames.tracks,
-            frames.knots,
-            frames.signs,
-        )
+        curve = self.segment_knots, self.segments, frames.tracks, frames.knots, frames.signs
+        misses: FloatArray = self._run("largest_misses", self.kernels[0], *curve)
         return misses
+
+    # -- engines --------------------------------------------------------------------------------
+
+    _is_compiled = False
+
+    def _begin(self, work: float, *kernels: Kernel) -> None:
+        """Count work on every track; machine code does it where that repays, or where it is there."""
+        work *= self._keyframes.tracks.shape[0]
+        self._work += work
+        for kernel in kernels:
+            kernel.work += work
+        self._is_compiled = self._is_compiled or engine.compiles(self._work, *kernels)
+
+    def _run(self, name: str, *arguments: Any) -> Any:
+        """A function of `plain`, or of `native`."""
+        if not self._is_compiled:
+            with engine.unfit_suppressed():
+                return getattr(plain, name)(*arguments)
+            self._is_compiled = True
+        return getattr(engine.native(), name)(*arguments)
 
     def _evaluate(
         self,
@@ -198,10 +222,43 @@ class SegmentCurve(Curve):
     ) -> int:
         if self._waiting is not None and t.size:
             self._fit_window(t.min() - origin, t.max() - origin)
-        kernel = self.kernels[order].address, order, self.described, origin, slack
+        kernel = self.kernels[order]
+        if not self._is_compiled:
+            self._begin(t.size)
+            kernel.work += t.size * self.segments.shape[0]
+            if not self._is_compiled:
+                with engine.unfit_suppressed():
+                    return self._evaluate_plainly(t - origin, slack, order, out)
+                self._is_compiled = True
+        sample = self._sample or self._compile()
+        given = kernel.address or engine.address(kernel), order, self.described, origin, slack
         if threads == 1 or t.size < 2 * THREAD_MINIMUM:
-            return int(sample(*kernel, t, out))
-        return _in_threads(kernel, t, out, min(threads, t.size // THREAD_MINIMUM))
+            return int(sample(*given, t, out))
+        return int(
+            engine.native().in_threads(
+                sample, given, t, out, min(threads, t.size // THREAD_MINIMUM)
+            )
+        )
+
+    def _compile(self) -> Any:
+        """Tell the driver where this curve is; returns the driver."""
+        frames, native = self._keyframes, engine.native()
+        curve = self.segment_knots, self.segments, frames.signs, frames.closed
+        self.described = native.described(*curve)
+        self._sample = native.sampler()
+        return self._sample
+
+    def _evaluate_plainly(self, t: FloatArray, slack: float, order: int, out: FloatArray) -> int:
+        inner, flips, bad = self._domain.wrap(t, slack)
+        if bad.any():
+            return int(np.argmax(bad))
+        result = out.reshape(t.size, self.segments.shape[0], 3 if order else 4)
+        segment = segment_of(self.segment_knots, inner)
+        curve = self.segment_knots, self.segments, segment, inner, result
+        plain.sample(self.kernels[order], *curve)
+        if order == 0:
+            result[np.ix_(flips, self._keyframes.signs < 0.0)] *= -1.0
+        return -1
 
     # The driver wraps and checks; these serve those who call them directly with inner times.
 
@@ -216,19 +273,6 @@ class SegmentCurve(Curve):
 
     def _inner(self, t: FloatArray, order: int) -> FloatArray:
         return self.inner(t, order)[:, 0]
-
-
-def _in_threads(kernel: tuple[Any, ...], t: FloatArray, out: FloatArray, count: int) -> int:
-    """Run the driver on as many parts of the samples; the first bad index, or -1."""
-    edges = np.linspace(0, t.size, count + 1).astype(int).tolist()
-    width = out.size // t.size
-    with ThreadPoolExecutor(count) as pool:
-        runs = [
-            pool.submit(partial(sample, *kernel), t[a:b], out[width * a : width * b])
-            for a, b in pairwise(edges)
-        ]
-        found = [(run.result(), a) for run, a in zip(runs, edges, strict=False)]
-    return min((index + a for index, a in found if index >= 0), default=-1)
 
 
 def _finite(column: FloatArray) -> FloatArray:

@@ -3,6 +3,7 @@
 import json
 import os
 import pickle
+import re
 import shutil
 import subprocess
 import sys
@@ -14,6 +15,8 @@ import pytest
 import quatspline as qs
 from processes import environment, python
 from quatspline import catalogue
+from quatspline.curve import Curve
+from quatspline.kernels import engine
 from tools import new_scheme
 from walks import walk
 
@@ -269,21 +272,34 @@ def test_unknown_attributes() -> None:
 # -- the template -------------------------------------------------------------------------------
 
 
-def test_scaffold_writes_a_working_scheme(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert new_scheme.main(["my_scheme", str(folder)]) == 0
+@pytest.mark.parametrize(
+    ("flags", "base", "numeric"),
+    [([], "Curve", (1, 2)), (["--compiled"], "SegmentCurve", ())],
+    ids=["plain", "compiled"],
+)
+def test_scaffold_writes_a_working_scheme(
+    flags: list[str],
+    base: str,
+    numeric: tuple[int, ...],
+    folder: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv(engine.VARIABLE, "python")
+    assert new_scheme.main(["my_scheme", str(folder), *flags]) == 0
     written = folder / "my_scheme.py"
     assert str(written) in capsys.readouterr().out
-    assert "class MyScheme(Curve):" in written.read_text()
-    assert len(written.read_text().splitlines()) <= 50
+    assert f"class MyScheme({base}):" in written.read_text()
     curve = qs.build("my-scheme", None, walk(5, 60.0), closed=True)
     assert np.abs(np.linalg.norm(curve(np.linspace(-3.0, 9.0, 50)), axis=-1) - 1.0).max() < 1e-14
     assert curve(0.5, 2).shape == (3,)
-    assert curve.numeric_orders == (1, 2)
+    assert curve.numeric_orders == numeric
 
 
-def test_scaffold_passes_its_own_checks(folder: Path) -> None:
+@pytest.mark.parametrize("flags", [[], ["--compiled"]], ids=["plain", "compiled"])
+def test_scaffold_passes_its_own_checks(flags: list[str], folder: Path) -> None:
     """What `make check-baseline NAME=...` runs."""
-    new_scheme.main(["my-checked", str(folder)])
+    new_scheme.main(["my-checked", str(folder), *flags])
     tests = [
         str(Path(__file__).parents[1] / "schemes" / f"test_{name}.py")
         for name in ("conformance", "claims")
@@ -300,6 +316,21 @@ def test_scaffold_passes_its_own_checks(folder: Path) -> None:
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     assert " passed" in done.stdout
     assert "failed" not in done.stdout
+
+
+@pytest.mark.parametrize("template", [new_scheme.TEMPLATE, new_scheme.COMPILED])
+def test_templates_have_little_but_comments_to_replace(template: str) -> None:
+    text = (catalogue.shipped("baselines") / template).read_text(encoding="utf-8")
+    code = [line for line in text.splitlines() if line.strip() and line.lstrip()[0] != "#"]
+    assert len(code) <= 100
+
+
+def test_the_template_names_every_claim_and_hook() -> None:
+    """What a scheme may set or write, it meets there."""
+    text = (catalogue.shipped("baselines") / new_scheme.TEMPLATE).read_text(encoding="utf-8")
+    claims = set(Curve.__annotations__) - {"name", "solve_report"}  # made, not written
+    hooks = {"_fit", "_orientation", "_velocity", "_acceleration", "_conclude"}
+    assert not {name for name in claims | hooks if not re.search(rf"\b{name}\b", text)}
 
 
 @pytest.mark.parametrize(

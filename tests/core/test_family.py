@@ -9,21 +9,39 @@ import pytest
 
 import quatspline as qs
 from quatspline.curve import Curve
-from quatspline.families.arcs import ARC, set_arc
+from quatspline.families.arcs import ANGLE, ARC, along, set_arc
+from quatspline.families.arcs import SIZE as ARC_SIZE
 from quatspline.families.circles import biarc, biarc_jet, blend, blend_jet
 from quatspline.families.means import point as mean
 from quatspline.families.nested import squad, squad_jet, triangle, triangle_jet
+from quatspline.kernels import engine
 from quatspline.kernels.family import called, family
-from quatspline.kernels.jit import CONSTANTS, RESULT, fit_kernel, inlined
-from quatspline.kernels.values import keyframe, vec
+from quatspline.kernels.jit import CONSTANTS, REACH, RESULT, fit_kernel, inlined
+from quatspline.kernels.scalars import sincos
+from quatspline.kernels.values import Vec, keyframe, vec
 from quatspline.segments import SegmentCurve
 from walks import uneven, walk
+
+ENGINES = ("python", "compiled")
+ROOM = RESULT - CONSTANTS
+LAST = ROOM - ARC_SIZE
+"""Where an arc's constants end with the sheet's room for them."""
+
+
+@pytest.fixture(params=ENGINES)
+def either(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
+    """One engine, then the other."""
+    monkeypatch.setenv(engine.VARIABLE, request.param)
+    return str(request.param)
 
 
 @fit_kernel
 def SILENT(q, h, closed, sign, parameters, segments, report):
+    """Reports no reach where the first keyframe has w < 0."""
     for i in range(h.size):
         set_arc(segments[i], 0, keyframe(q, i, sign), keyframe(q, i + 1, sign))
+    if q[0, 0] >= 0.0:
+        report[REACH] = 2.0
 
 
 class Silent(SegmentCurve):
@@ -36,17 +54,55 @@ class Silent(SegmentCurve):
         self._solve(SILENT)
 
 
-def test_a_fit_that_reports_no_reach_is_refused() -> None:
+@pytest.mark.parametrize("signs", [(-1.0,), (1.0, -1.0), (-1.0, 1.0)])
+def test_a_fit_that_reports_no_reach_is_refused(either: str, signs: tuple[float, ...]) -> None:
     """By default it would take the kernels for near angles, which are wrong for any other."""
+    q = walk(4, 50.0)
+    q = q * np.sign(q[0, 0])
+    assert Silent(None, q).engine == either
     with pytest.raises(TypeError, match=r"silent: .* does not write report\[REACH\]"):
-        Silent(None, walk(4, 50.0))
+        Silent(None, np.stack([sign * q for sign in signs], axis=1))
 
 
 def test_a_family_too_big_for_its_sheet_is_refused() -> None:
-    rows = RESULT - CONSTANTS
-    assert family(rows, squad, jet=squad_jet).constants == rows
-    with pytest.raises(ValueError, match=rf"{rows + 1} constants per segment: .* {rows} rows"):
-        family(rows + 1, squad, jet=squad_jet)
+    """When it is made, before any engine has it."""
+    assert family(ROOM, squad, jet=squad_jet).constants == ROOM
+    with pytest.raises(ValueError, match=rf"{ROOM + 1} constants per segment: .* {ROOM} rows"):
+        family(ROOM + 1, squad, jet=squad_jet)
+
+
+@inlined
+def last_arc(c, u):
+    sine, cosine = sincos(u * c[LAST + ANGLE])
+    return along(c, LAST, sine, cosine)
+
+
+@inlined
+def no_rate(c, u):
+    return Vec(0.0, 0.0, 0.0)
+
+
+@fit_kernel
+def FILL(q, h, closed, sign, parameters, segments, report):
+    for i in range(h.size):
+        segments[i, :LAST] = np.nan
+        set_arc(segments[i], LAST, keyframe(q, i, sign), keyframe(q, i + 1, sign))
+    report[REACH] = 0.0
+
+
+class Full(Silent):
+    name = "full"
+    family = family(ROOM, last_arc, velocity=no_rate, acceleration=no_rate)
+
+    def _fit(self, keyframes: Any) -> None:
+        self._solve(FILL)
+
+
+def test_a_family_that_fills_its_sheet_works(either: str) -> None:
+    q = walk(4, 50.0)
+    curve, t = Full(None, q), np.linspace(0.0, 3.0, 61)
+    assert curve.engine == either
+    np.testing.assert_allclose(curve(t), qs.build("slerp", None, q)(t), atol=1e-15)
 
 
 def test_a_family_without_rates_is_refused() -> None:

@@ -32,6 +32,13 @@ def test_names_of_today_and_unknown_ones_are_left_alone() -> None:
         importlib.import_module("quatspline.nothing")
 
 
+def test_modules_of_a_moved_package_are_found_once() -> None:
+    with pytest.warns(DeprecationWarning, match="quatspline.motion.files"):
+        old = importlib.import_module("quatspline.trajectories.files.npz")
+    assert old is importlib.import_module("quatspline.motion.files.npz")
+    assert today("quatspline.report.page.document") == "quatspline.page.document"
+
+
 def test_old_names_leave_the_public_functions_alone() -> None:
     code = (
         "import warnings; warnings.simplefilter('ignore')\n"

@@ -9,7 +9,8 @@ import pytest
 
 import quatspline as qs
 from quatspline.curve import Curve
-from quatspline.kernels.driver import BATCH, LONG
+from quatspline.kernels.driver import BATCH
+from quatspline.kernels.locating import LONG
 from quatspline.segments import CHUNK, LAZY, SegmentCurve
 from walks import apart, applies, walk
 

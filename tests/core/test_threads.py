@@ -21,7 +21,7 @@ from numba import config
 import quatspline as qs
 from processes import STUCK, environment, python
 from quatspline import catalogue
-from quatspline.kernels import jit
+from quatspline.kernels import compiler, jit
 from quatspline.system.quiet import quiet
 
 TRIAL = Path(__file__).parents[1] / "robustness" / "threads.py"
@@ -199,7 +199,7 @@ def test_two_files_decorated_at_once_keep_their_cache_folders(
         def decorate(function: Callable[[], Any]) -> bool:
             inside[function()[0]].set()
             function()[1]()
-            return jit.cache_folder(Path(function.__code__.co_filename)) == config.CACHE_DIR
+            return compiler.cache_folder(Path(function.__code__.co_filename)) == config.CACHE_DIR
 
         return decorate
 
@@ -208,7 +208,7 @@ def test_two_files_decorated_at_once_keep_their_cache_folders(
         path.write_text(f"def f():\n    return {place}, meet\n")
         names: dict[str, Any] = {"meet": meet}
         exec(compile(path.read_text(), str(path), "exec"), names)
-        return jit.compiled(names["f"])
+        return compiler.machine(jit.compiled(names["f"]))
 
     monkeypatch.setattr(numba, "njit", decorating)
 
@@ -325,11 +325,21 @@ thread.join(60)
         ),
         (
             "from numba.core.compiler_lock import global_compiler_lock as lock\n"
-            "import quatspline.kernels.jit\n"
+            "import quatspline.kernels.compiler\n"
             "def compiling():\n    with lock:\n        gate.entered.set(); gate.go.wait(60)\n"
             "thread = threading.Thread(target=compiling)\n"
             "thread.start(); assert gate.entered.wait(60)",
             "lock.acquire()",
+        ),
+        (
+            "import sys, time, quatspline as qs\n"
+            "keys = [[1, 0, 0, 0], [0.8, 0.6, 0, 0], [0, 0.6, 0.8, 0], [0, 0, 1, 0]]\n"
+            "os.environ['QUATSPLINE_ENGINE'] = 'compiled'\n"
+            "thread = threading.Thread(target=lambda: qs.build('slerp', None, keys))\n"
+            "thread.start()\n"
+            "while 'numba' not in sys.modules: time.sleep(0.001)\n"
+            "gate.entered.set(); gate.go.set()",
+            "os._exit(0 if qs.build('slerp', None, keys)(0.5).shape == (4,) else 3)",
         ),
         (
             "from quatspline.system.quiet import quiet\n"
@@ -339,7 +349,7 @@ thread.join(60)
             "with quiet(): pass",
         ),
     ],
-    ids=["an import", "a compilation", "a peer"],
+    ids=["an import", "a compilation", "a first compilation", "a peer"],
 )
 def test_a_forked_child_waits_for_no_thread_it_lacks(
     folder: Path, prepared: str, asked: str

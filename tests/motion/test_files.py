@@ -12,7 +12,7 @@ from keyfiles import put, refusal
 
 from quatspline.motion.closing import opened, returning
 from quatspline.motion.files import Motion, MotionFileError, read, write, writing
-from quatspline.motion.motion_curve import sampled
+from quatspline.motion.resampling import sampled
 from quatspline.system.atomic import replacing
 
 TIMES = np.array([0.0, 0.1, 1.0 / 3.0, 1305031102.175800085])

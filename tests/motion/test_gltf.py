@@ -63,6 +63,12 @@ def test_cubic_splines_keep_their_tangents(tmp_path: Path) -> None:
         motion.out_tangents[:, 0], [[0, 0, 0, 1], [0, 0.2, 0, 0.3]], atol=1e-7
     )
     np.testing.assert_allclose(motion.in_tangents[:, 0], [[0, 0, 0, 0], [0, 0, 0, 0.5]], atol=1e-7)
+    qs.write_motion(tmp_path / "a.npz", motion)
+    kept = qs.read_motion(tmp_path / "a.npz")
+    assert kept.interpolation == "CUBICSPLINE"
+    np.testing.assert_array_equal(kept.out_tangents, motion.out_tangents)
+    with pytest.warns(MotionFileWarning, match="tangents of its splines are not carried"):
+        qs.write_motion(tmp_path / "a.glb", motion)
     path = put(tmp_path / "b.gltf", gltf([cubic, short], [*NODES, {}]))
     with pytest.warns(MotionFileWarning, match="brought to 3"):
         both = qs.read_motion(path)

@@ -202,6 +202,7 @@ GLTFS: dict[str, tuple[Callable[[dict[str, Any]], None], str]] = {
     "whole numbers": (changed("accessors", 0, "componentType", to=5125), "are not normalised"),
     "a negative count": (changed("accessors", 0, "count", to=-1), "count = -1: a whole number"),
     "a huge count": (changed("accessors", 0, "count", to=10**12), "are not read"),
+    "no data": (lambda document: document["accessors"][1].pop("bufferView"), "without data"),
     "beyond the view": (changed("accessors", 0, "count", to=4), "reaches beyond its buffer"),
     "beyond the buffer": (
         changed("bufferViews", 1, "byteOffset", to=40),
@@ -335,6 +336,7 @@ def test_rows(tmp_path: Path, name: str, text: str, what: str) -> None:
     ("arrays", "what"),
     [
         ({"tracks": np.array(["a"])}, "1 tracks"),
+        ({"tracks": np.array(["a", "a"])}, "tracks: two are called 'a'"),
         ({"tracks": np.arange(2)}, "tracks (int64): text expected"),
         ({"parents": np.array([1, 0])}, "parents[0] leads to no root"),
         ({"parents": np.array([-1, 7])}, "parents[1] leads to no root"),

@@ -9,7 +9,7 @@ from clips import angles, figure, put
 import quatspline as qs
 from quatspline import quaternion
 from quatspline.motion import positions as families
-from quatspline.motion.motion_curve import grid, sampled
+from quatspline.motion.resampling import grid, sampled
 
 
 def test_all_tracks_are_one_batched_curve() -> None:

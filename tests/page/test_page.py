@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import re
+from html import unescape
 from pathlib import Path
 from typing import Any
 
@@ -260,7 +261,10 @@ def test_speed_targets_stand_above_their_table(html: str, page_folder: Path) -> 
     section = html.partition('<section id="speed">')[2].partition("</section>")[0]
     read = reader(page_folder)
     shown = [targets.cells(verdict) for verdict in targets.verdicts(read)]
-    cells = re.findall(r"<td>(.*?)</td>", section.partition('id="result-speed"')[0])
+    cells = [
+        unescape(cell)
+        for cell in re.findall(r"<td>(.*?)</td>", section.partition('id="result-speed"')[0])
+    ]
     assert cells == [cell for row in shown for cell in row[1:]]
     heads = re.findall(r'<th scope="row">(.*?)</th>', section)
     assert [re.sub("</?code>", "`", head) for head in heads] == [row[0] for row in shown]

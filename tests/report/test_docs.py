@@ -13,10 +13,17 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.interpolate import CubicHermiteSpline
 
 import quatspline as qs
-from quatspline.catalogue import found
+from quatspline import quaternion
+from quatspline.catalogue import FOLDERS, found
+from quatspline.curve import Curve
+from quatspline.kernels import engine
+from quatspline.segments import SegmentCurve
+from tools.new_scheme import COMPILED, new_scheme
 from tools.readme import DOCS, PICTURES, QUOTING, ROOT, derivations, pages_block
+from walks import inside, uneven, walk
 
 SOURCE_LINK = re.compile(r"\]\(([^)#:]+)(?:#[^)]*)?\)")
 SRC = re.compile(r'(?:src|<link[^>]* href)="([^"]+)"')
@@ -82,6 +89,65 @@ def test_the_readme_example_runs() -> None:
     curve = names["curve"]
     np.testing.assert_allclose(np.abs(curve(2.5) @ [0.6, 0, 0.8, 0]), 1.0, atol=1e-15)
     assert curve([0.1, 2.0], 1).shape == (2, 3)  # as the comment beside it says
+
+
+def my_cubic() -> str:
+    """The file that the page on compiled families shows."""
+    page = (DOCS / "writing-a-family.md").read_text(encoding="utf-8")
+    (block,) = re.findall(r"^```python\n(.*?)^```", page, re.M | re.S)
+    return str(block)
+
+
+def test_the_worked_family_is_what_the_scaffold_writes(tmp_path: Path) -> None:
+    """Whose conformance and claims are checked there (test_catalogue)."""
+    written = new_scheme("my_cubic", tmp_path, COMPILED)
+    assert my_cubic() == written.read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def folder_of_the_page(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """One for all tests, because the compiler's cache goes by path."""
+    folder = tmp_path_factory.mktemp("worked")
+    (folder / "my_cubic.py").write_text(my_cubic(), encoding="utf-8")
+    return folder
+
+
+@pytest.fixture(params=["python", "compiled"])
+def worked(
+    request: pytest.FixtureRequest, folder_of_the_page: Path, monkeypatch: pytest.MonkeyPatch
+) -> type[Curve]:
+    """The scheme that the page shows, found in its folder, by one engine and then the other."""
+    monkeypatch.setenv(FOLDERS, str(folder_of_the_page))
+    monkeypatch.setenv(engine.VARIABLE, request.param)
+    scheme = qs.scheme("my-cubic")
+    assert issubclass(scheme, SegmentCurve)
+    assert scheme(None, walk(3, 40.0)).engine == request.param
+    return scheme
+
+
+def normalised_cubic(t: Any, q: Any, x: Any) -> list[Any]:
+    """Orientations and rates of scipy's cubic through t, q and the ends' parabolas, normalised."""
+    cubic = CubicHermiteSpline(t, q, np.gradient(q, t, axis=0, edge_order=2))
+    p, p1, p2 = cubic(x), cubic(x, 1), cubic(x, 2)
+    size, along = ((p * d).sum(axis=1, keepdims=True) for d in (p, p1))
+    w, bent = (2.0 * quaternion.mul(quaternion.conj(p), d)[:, 1:] / size for d in (p1, p2))
+    return [p / np.sqrt(size), w, bent - 2.0 * along / size * w]
+
+
+def test_the_worked_family_is_the_normalised_cubic(worked: type[Curve]) -> None:
+    t, q = uneven(9), quaternion.align(walk(9, 70.0))
+    curve, x = worked(t, q), inside(t, 5)
+    for order, wanted in enumerate(normalised_cubic(t, q, x)):
+        np.testing.assert_allclose(curve(x, order), wanted, atol=1e-13 * np.abs(wanted).max())
+
+
+def test_the_worked_family_answers_where_its_point_has_no_length(worked: Any) -> None:
+    """On a segment whose cubic goes straight through 0, as between antipodes."""
+    curve = worked(None, walk(2, 40.0))
+    curve.segments[0, 0] = [1.0, 0.0, 0.0, 0.0, -2.0] + 11 * [0.0]
+    np.testing.assert_array_equal(curve([0.5, 0.25]), 2 * [[1.0, 0.0, 0.0, 0.0]])
+    assert np.isfinite(curve(0.5, 1)).all()
+    assert np.isfinite(curve(0.5, 2)).all()
 
 
 def modules() -> list[str]:

@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 import quatspline as qs
 from golden import GOLDEN, KNOTS, Q
 from quatspline import quaternion
+from quatspline.kernels.values import Mat, Vec
 from quatspline.quaternion import FloatArray
 from smoothness import assert_joined, assert_own_rates, motion
 from walks import apart, apart_up_to_sign, inside, uneven, walk
@@ -23,8 +24,10 @@ UNIQUE = 1e-3
 
 
 def nearest(b: FloatArray) -> FloatArray:
+    """The Cayley parameters of the nearest rotation."""
     module = sys.modules[qs.scheme("moving-frame").__module__]
-    return np.array(module.nearest(*(tuple(column) for column in b.T)))
+    w, *d = module.nearest(Mat(*(Vec(*column) for column in b.T)))
+    return np.array(d) / w
 
 
 def polar(b: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -11,6 +11,7 @@ import quatspline as qs
 from golden import GOLDEN, KNOTS, Q, assert_golden
 from quatspline import quaternion, stencil
 from quatspline.families import chords, nested
+from quatspline.kernels.values import Quat
 
 ENTRIES = {
     "slerp": ("slerp", {}),
@@ -426,8 +427,9 @@ def test_slerp_jet(gap):
     for rate, phase, second in ((0.7, 0.0, frame[1]), (0.9, gap, 0.8 * frame[1] + 0.6 * frame[2])):
         p = arc(frame[0], second, 1.0, phase, 0.0, math)
         turned = arc(second, -frame[0], 1.0, phase, 0.0, math)
-        jets += [tuple(p), tuple(rate * c for c in turned), tuple(-rate * rate * c for c in p)]
-    found = nested.slerp_jet(*jets, 0.4, 0.3, 1.0)
+        p, turned = Quat(*p), Quat(*turned)
+        jets.append((p, rate * turned, -rate * rate * p))
+    found = nested.slerp_jet(*jets, (0.4, 0.3, 1.0))
     tolerance = 1e-13 / math.sin(gap) ** 2 if gap > 1.0 else 1e-13
     with mp.workdps(40):
         for order in (0, 1, 2):

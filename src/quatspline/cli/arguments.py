@@ -31,7 +31,10 @@ def parser() -> argparse.ArgumentParser:
     _add_run(commands)
     _add_compare(commands)
     _add_sample(commands)
+    _add_reduce(commands)
+    _add_info(commands)
     _add_report(commands)
+    commands.add_parser("warmup", help="compile everything once, so that nothing waits later")
     return whole
 
 
@@ -59,6 +62,8 @@ def _add_compare(commands: Any) -> None:
     compare = commands.add_parser("compare", help="schemes on your own keyframes")
     _add_keyframes(compare, nargs="?")  # it may stand behind the words of --schemes
     _add_schemes(compare)
+    kept = "take every K-th frame for a keyframe, and measure at the frames left out"
+    compare.add_argument("--keep", type=_count, metavar="K", help=kept)
     where = "for tables, figures and the page; by default KEYFRAMES-compared here"
     compare.add_argument("--out", type=Path, metavar="DIR", help=where)
     _add_force(compare)
@@ -73,7 +78,31 @@ def _add_sample(commands: Any) -> None:
     grid.add_argument(
         "--count", type=_count, metavar="N", help="samples in all, both ends included"
     )
+    grid.add_argument("--at", metavar="FILE", help="at the times of another motion file")
+    held = "the first and last pose outside the keyframes' times"
+    sample.add_argument("--hold", action="store_true", help=held)
+    along = "how positions go: matched (to the scheme), linear, catmull-rom, cubic, ..."
+    sample.add_argument("--positions", default="matched", metavar="FAMILY", help=along)
     sample.add_argument("-o", dest="file", metavar="FILE", help="by default CSV on stdout")
+
+
+def _add_reduce(commands: Any) -> None:
+    reduce = commands.add_parser(
+        "reduce", help="the frames of a dense motion from which a scheme rebuilds it"
+    )
+    _add_file(reduce)
+    bound = "the largest angle at a frame left out: 0.5deg, 0.01rad"
+    reduce.add_argument("--error", type=_angle, required=True, metavar="ANGLE", help=bound)
+    reduce.add_argument("--scheme", default="slerp", metavar="S", help="%(default)s")
+    together = "one set of frames for all joints, not one each"
+    reduce.add_argument("--together", action="store_true", help=together)
+    out = "keyframes by joint (.csv, .npz), or the motion rebuilt at its frames (.bvh, .glb)"
+    reduce.add_argument("-o", dest="file", metavar="FILE", help=out)
+
+
+def _add_info(commands: Any) -> None:
+    info = commands.add_parser("info", help="what a motion file is: tracks, rate, gaps, noise")
+    _add_file(info)
 
 
 def _add_report(commands: Any) -> None:
@@ -86,13 +115,25 @@ def _add_report(commands: Any) -> None:
 
 
 def _add_keyframes(parser: argparse.ArgumentParser, nargs: Literal["?"] | None = None) -> None:
-    kinds = (
-        "CSV (t,qw,qx,qy,qz, or columns named in a header), TUM (t tx ty tz qx qy qz qw) or NPZ "
-        "(times, quaternions, positions)"
-    )
-    parser.add_argument("keyframes", metavar="KEYFRAMES", help=kinds, nargs=nargs)
+    _add_file(parser, nargs)
     closing = "a closed curve: the last row repeats the first orientation, or times are uniform"
     parser.add_argument("--closed", action="store_true", help=closing)
+
+
+def _add_file(parser: argparse.ArgumentParser, nargs: Literal["?"] | None = None) -> None:
+    kinds = (
+        "CSV (t,qw,qx,qy,qz, or columns named in a header), TUM (t tx ty tz qx qy qz qw), EuRoC, "
+        "KITTI, NPZ, BVH, AMC, glTF or GLB"
+    )
+    parser.add_argument("keyframes", metavar="KEYFRAMES", help=kinds, nargs=nargs)
+    parser.add_argument(
+        "--skip", type=_frames, default=0, metavar="N", help="frames left out first"
+    )
+    parser.add_argument("--skeleton", metavar="ASF", help="of an AMC; by default the one beside it")
+    rate = "of files that do not say (KITTI, AMC), or other than a BVH says"
+    parser.add_argument("--frame-rate", type=_rate, metavar="HZ", help=rate)
+    gap = "frames farther apart (s) are in pieces, each with a curve of its own"
+    parser.add_argument("--max-gap", type=_rate, metavar="S", help=gap)
 
 
 def _add_schemes(parser: argparse.ArgumentParser) -> None:
@@ -115,6 +156,19 @@ def _number(kind: type, accepts: Callable[[Any], bool], wanted: str) -> Callable
     return parsed
 
 
+def _angle(text: str) -> float:
+    """An angle in rad of a number with its unit."""
+    number = text.strip().lower().removesuffix("°")
+    unit = "deg" if number != text.strip().lower() else number[-3:]
+    number = number.removesuffix(unit)
+    with suppress(ValueError):
+        value = float(number) * {"deg": math.pi / 180.0, "rad": 1.0}.get(unit, math.nan)
+        if 0.0 < value < math.inf:
+            return value
+    raise argparse.ArgumentTypeError(f"{text!r}: a positive angle with its unit, as 0.5deg")
+
+
 _rate = _number(float, lambda value: 0.0 < value < math.inf, "a positive number")
 _count = _number(int, lambda value: value >= 1, "a whole number, at least 1,")
+_frames = _number(int, lambda value: value >= 0, "a whole number, at least 0,")
 _seed = _number(int, lambda value: value >= 0, "a whole number, at least 0,")

@@ -1,4 +1,4 @@
-"""The command line: list, run, compare, sample, report.
+"""The command line: list, run, compare, sample, reduce, info, report, warmup.
 
 Exit status: 0 done; 1 something unforeseen failed; 2 bad usage or bad input, told in one line on
 stderr; 130 interrupted.  Whatever is slow to import waits until a command needs it.
@@ -11,19 +11,18 @@ import errno
 import os
 import sys
 import traceback
-import warnings
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from quatspline.cli.arguments import REFUSED, parser
-from quatspline.system.atomic import naming, same_file
+from quatspline.cli.notes import note
+from quatspline.system.atomic import naming
 from quatspline.system.stdout import STDOUT, say
 
 if TYPE_CHECKING:
     from quatspline.catalogue import Found
-    from quatspline.motion import Motion
 
 DONE, FAILED, INTERRUPTED = 0, 1, 130
 
@@ -79,12 +78,8 @@ def _give_up_stdout() -> None:
 
 
 def _told(line: str, status: int) -> int:
-    _note(line)
+    note(line)
     return status
-
-
-def _note(line: str) -> None:
-    print(f"quatspline: {' '.join(line.split())}", file=sys.stderr)
 
 
 def _unforeseen(error: Exception) -> int:
@@ -149,23 +144,24 @@ def _run(arguments: argparse.Namespace) -> int:
 
 
 def _compare(arguments: argparse.Namespace) -> int:
-    from quatspline.cli import compare, words
+    from quatspline.cli import compare, joints, recorded, words
     from quatspline.runs.results import Results
 
     # A wrong name is told before a long file is read.
     arguments.keyframes, schemes = words.of_compare(arguments.keyframes, arguments.schemes)
-    motion = _motion(arguments)
+    motion = recorded.motion_of(arguments)
+    body = len(motion.tracks) == 1
+    if not body and arguments.keep is None:
+        told = f"{len(motion.tracks)} tracks are compared at the frames that --keep K leaves out"
+        raise ValueError(f"{arguments.keyframes}: {told}")
     out = arguments.out or Path(f"{Path(arguments.keyframes).stem}-compared")
     results = Results(out, force=arguments.force)
     with results.writing():
-        results.guard(compare.FILES, inputs=[arguments.keyframes])
-        return compare.command(
-            motion,
-            schemes=schemes,
-            closed=arguments.closed,
-            results=results,
-            call=arguments.command,
-        )
+        results.guard((compare if body else joints).FILES, inputs=[arguments.keyframes])
+        common = {"schemes": schemes, "results": results, "call": arguments.command}
+        if not body:
+            return joints.command(motion, every=arguments.keep, **common)
+        return compare.command(motion, closed=arguments.closed, every=arguments.keep, **common)
 
 
 def _report(arguments: argparse.Namespace) -> int:
@@ -175,67 +171,31 @@ def _report(arguments: argparse.Namespace) -> int:
 
 
 def _sample(arguments: argparse.Namespace) -> int:
-    from quatspline import catalogue
-    from quatspline.motion import files
-    from quatspline.motion.motion_curve import grid, sampled
+    from quatspline.cli import recorded
 
-    catalogue.scheme(arguments.scheme)  # a wrong name is told before a long file is read
-    if arguments.file is not None:
-        files.check_suffix(arguments.file)
-        if same_file(arguments.keyframes, arguments.file):
-            raise ValueError(f"{arguments.file}: is read here, so it is not written over")
-    motion = _motion(arguments)
-    with _naming(arguments.keyframes):
-        curve = motion.curve(arguments.scheme, closed=arguments.closed)
-    samples = sampled(curve, grid(curve, arguments.rate, arguments.count))
-    if motion.unread:
-        _note(f"{arguments.keyframes}: not carried: {', '.join(map(repr, motion.unread))}")
-    if arguments.file is None:
-        with naming(STDOUT):
-            files.write_csv(sys.stdout, samples)
-    else:
-        with _noted():
-            files.write(arguments.file, samples)
+    recorded.sample(arguments)
     return DONE
 
 
-def _motion(arguments: argparse.Namespace) -> Motion:
-    from quatspline.keyframes import prepare
-    from quatspline.motion import closing, files
+def _reduce(arguments: argparse.Namespace) -> int:
+    from quatspline.cli import recorded
 
-    with _noted():
-        motion = files.read(arguments.keyframes)
-    with _naming(arguments.keyframes):
-        motion = closing.returning(motion) if arguments.closed else closing.opened(motion)
-        prepare(motion.stamps, motion.quaternions, closed=arguments.closed)
-    if motion.note:
-        _note(f"{arguments.keyframes}: {motion.note}")
-    return motion
+    recorded.reduce(arguments)
+    return DONE
 
 
-@contextmanager
-def _noted() -> Iterator[None]:
-    """Warnings of what a file lost or left open are lines on stderr, once each."""
-    from quatspline.motion import MotionFileWarning
+def _info(arguments: argparse.Namespace) -> int:
+    from quatspline.cli import recorded
 
-    with warnings.catch_warnings(record=True) as told:
-        warnings.simplefilter("always", MotionFileWarning)
-        yield
-    ours = [item for item in told if issubclass(item.category, MotionFileWarning)]
-    for line in dict.fromkeys(str(item.message) for item in ours):
-        _note(line)
-    for other in told:
-        if other not in ours:
-            warnings.warn_explicit(other.message, other.category, other.filename, other.lineno)
+    recorded.info(arguments)
+    return DONE
 
 
-@contextmanager
-def _naming(path: str) -> Iterator[None]:
-    """What is wrong with the keyframes of a file is told with the file's name."""
-    try:
-        yield
-    except ValueError as error:
-        raise ValueError(f"{path}: {error}") from error
+def _warm_up(arguments: argparse.Namespace) -> int:
+    from quatspline.runs.warmup import main
+
+    main()
+    return DONE
 
 
 COMMANDS = {
@@ -243,5 +203,8 @@ COMMANDS = {
     "run": _run,
     "compare": _compare,
     "sample": _sample,
+    "reduce": _reduce,
+    "info": _info,
     "report": _report,
+    "warmup": _warm_up,
 }

@@ -7,7 +7,11 @@ import time
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from quatspline import comparing
+from quatspline.inputs.stamps import elapsed
+from quatspline.kernels.engine import always_compiled
 from quatspline.system.stdout import say
 
 if TYPE_CHECKING:
@@ -25,6 +29,11 @@ FILES = [
     *("recommendation.md", "report.html"),
 ]
 """What the command writes."""
+ERRORS = ("left_out_rms", "left_out_largest")
+KEPT = (
+    " left_out_rms and left_out_largest are the root mean square and the largest angle (rad) at the frames that "
+    "--keep leaves out."
+)
 BARS = "Torque energy over the least of all schemes compared; hollow: not C2 as measured here.\n"
 RATES = "Norms of the angular velocity and acceleration over time; grey lines are keyframes.\n"
 
@@ -35,6 +44,7 @@ def command(
     schemes: Sequence[str] | None,
     closed: bool,
     results: Results,
+    every: int | None = None,
     call: Sequence[str] = (),
 ) -> int:
     """Serve ``quatspline compare``: tables, figures, the recommendation and the page in a folder.
@@ -48,15 +58,19 @@ def command(
     from quatspline.page.sections import OWN
 
     began = time.perf_counter()
+    source, motion = motion, _kept(motion, every)
     keyframes = comparing.prepared(motion.stamps, motion.quaternions[:, 0], closed)
     results.begin(call, schemes=list(schemes) if schemes is not None else None)
-    table, curves = comparing.compared(keyframes, schemes)
+    with always_compiled():
+        table, curves = comparing.compared(keyframes, schemes)
+        if every is not None:
+            table = _with_errors(table, curves, source, every)
     table = results.table(
         "compare",
         table,
         title=comparing.TITLE,
-        note=comparing.NOTE,
-        formats=comparing.FORMATS,
+        note=comparing.NOTE + (KEPT if every is not None else ""),
+        formats=comparing.FORMATS | dict.fromkeys(ERRORS, ".3e"),
         keys=[],
     )
     found = _recommended(results, table)
@@ -69,6 +83,39 @@ def command(
     page = write_page(results, title=comparing.TITLE, scenes=[scene], sections=OWN, findings=found)
     print(page, file=sys.stderr)
     return 0
+
+
+def _kept(motion: Motion, every: int | None) -> Motion:
+    """The frames that are keyframes."""
+    from quatspline.motion.keeping import left_out
+
+    if len(motion.edges) > 2:
+        raise ValueError(f"the motion is in {len(motion.edges) - 1} pieces: compare one of them")
+    if every is None:
+        return motion
+    if motion.closed:
+        raise ValueError("--keep takes an open motion")
+    return motion.frames(~left_out(motion, every))
+
+
+def _with_errors(
+    table: pd.DataFrame, curves: Mapping[str, Curve], source: Motion, every: int
+) -> pd.DataFrame:
+    """The table with the errors of curves, through kept frames, at those left out."""
+    from quatspline import quaternion
+    from quatspline.motion.keeping import left_out
+
+    out = left_out(source, every)
+    q = quaternion.normalise(source.quaternions[out, 0])
+    # Curves are of stamps in the file's unit, as `comparing.prepared` has them.
+    t = elapsed(source.stamps[out], source.stamps[0])
+    angles = {name: quaternion.distance(curve(t), q) for name, curve in curves.items()}
+    rms = {name: np.sqrt((angle**2).mean()) for name, angle in angles.items()}
+    largest = {name: angle.max() for name, angle in angles.items()}
+    place = list(table.columns).index("misses") + 1
+    for name, column in zip(reversed(ERRORS), (largest, rms), strict=True):
+        table.insert(place, name, table["scheme"].map(column))
+    return table
 
 
 def _recommended(results: Results, table: pd.DataFrame) -> list[Finding]:

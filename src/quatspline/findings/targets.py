@@ -16,6 +16,7 @@ import pandas as pd
 from quatspline.claims.claim import UNDECIDED
 from quatspline.findings.quotes import Ledger, Reader
 from quatspline.runs.experiment import QUICK
+from quatspline.timing.speed import FOUR_FRAMES, JOINTS, SET_UP_OF_JOINTS
 
 ROTATION_SPLINE = "scipy-rotation-spline"
 SHORT = "falls short"
@@ -101,6 +102,22 @@ def _ahead(*peers: str, scheme: str) -> Target:
     return Target(text, 20.0, _faster("evaluate", scheme, *peers), at_least=True)
 
 
+def _many(scheme: str) -> Target:
+    def value(cell: Ledger) -> float:
+        return _each(cell, FOUR_FRAMES, scheme) / JOINTS / _each(cell, "evaluate", scheme)
+
+    return Target(
+        f"`{scheme}`, 31 joints at four frames a segment, over one dense track", 1.25, value
+    )
+
+
+def _joints(scheme: str, most: float) -> Target:
+    def value(cell: Ledger) -> float:
+        return 1e3 * _seconds(cell, SET_UP_OF_JOINTS, scheme)
+
+    return Target(f"set-up of `{scheme}` on 31 joints and 2500 keyframes", most, value, unit="ms")
+
+
 TARGETS: tuple[Target, ...] = (
     Target(
         "`quartic`, a million sorted samples, over `out.fill` on the same output",
@@ -147,6 +164,14 @@ TARGETS: tuple[Target, ...] = (
         20.0,
         _faster("one sample", "quartic", ROTATION_SPLINE),
         at_least=True,
+    ),
+    *(_many(scheme) for scheme in ("squad", "local-quintic", "quartic")),
+    *(_joints(scheme, most) for scheme, most in (("local-quintic", 7), ("kim", 15), ("squad", 15))),
+    Target(
+        "a first curve and sample in a new process, after `import numpy`",
+        2.0,
+        lambda cell: _seconds(cell, "start", "first sample"),
+        unit="s",
     ),
     Target(
         "`import quatspline` after `import numpy`",

@@ -28,10 +28,9 @@ from quatspline.families.cumulative import set_base, set_factor
 from quatspline.fitting.tangents import chart_velocity
 from quatspline.kernels.jacobians import inverse_right_jacobian
 from quatspline.kernels.jit import compiled, inlined
+from quatspline.kernels.quick import exp, log
 from quatspline.kernels.values import (
-    exp,
     keyframe,
-    log,
     put_vec_column,
     quat_column,
     vec,

@@ -14,9 +14,8 @@ from quatspline.fitting.block_tridiagonal import workspace
 from quatspline.fitting.bspline import increments, tie
 from quatspline.fitting.bspline_rows import assemble, look
 from quatspline.kernels.jit import compiled, inlined
+from quatspline.kernels.quick import exp, log
 from quatspline.kernels.values import (
-    exp,
-    log,
     put_quat_column,
     put_vec,
     put_vec_column,

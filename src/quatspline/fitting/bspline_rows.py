@@ -18,10 +18,11 @@ from quatspline.fitting.block_tridiagonal import backward, forward
 from quatspline.fitting.bspline import set_phantoms
 from quatspline.kernels.jacobians import coefficients, spun
 from quatspline.kernels.jit import compiled, inlined
-from quatspline.kernels.scalars import series, sinc
+from quatspline.kernels.quick import log
+from quatspline.kernels.scalars import FITTED, series, sinc
 from quatspline.kernels.values import (
     Mat,
-    log,
+    Vec,
     polar_exp,
     put_quat_column,
     put_vec,
@@ -29,9 +30,6 @@ from quatspline.kernels.values import (
     vec_at,
     vec_column,
 )
-
-FAR = 3.2
-"""Squared half angle from which `series` no longer serves."""
 
 BEFORE, AFTER, WHOLE = 0, 3, 6
 """Rows of the jets (s, c, b) of m_k w_k, p_k w_{k+1} and w_{k+1}."""
@@ -42,7 +40,7 @@ LOWER, OWN, UPPER, COLUMNS = 0, 9, 18, 64
 
 @inlined
 def put_jet(jets, first, k, z):
-    """s, c and b of `jacobians` for |v|^2 = z below FAR."""
+    """s, c and b of `jacobians` for |v|^2 = z below FITTED."""
     s, c = series(z)
     jets[first, k], jets[first + 1, k] = 1.0 + z * s, 1.0 + z * c
     jets[first + 2, k] = -(s + c + z * s * c)
@@ -62,8 +60,9 @@ def put_far_jets(jets, m, p, j, size):
 
 @compiled
 def set_jets(m, p, w, jets):
-    """The jets (s, c, b) of m_k w_k, p_k w_{k+1} and w_{k+1} for every knot k, in rows BEFORE,
-    AFTER and WHOLE; loops of few constants and no branch, which vectorise.
+    """The jets of m_k w_k, p_k w_{k+1} and w_{k+1} for every knot k.
+
+    Loops of few constants and no branch, which vectorise.
     """
     n = m.size
     size = np.empty(n + 1)
@@ -76,7 +75,7 @@ def set_jets(m, p, w, jets):
     for k in range(n):
         put_jet(jets, WHOLE, k, size[k + 1])
     for j in range(n + 1):
-        if not size[j] < FAR:
+        if not size[j] < FITTED:
             put_far_jets(jets, m, p, j, size[j])
 
 
@@ -125,24 +124,41 @@ def set_gaps(w, jets, d, gaps):
 
 
 @inlined
-def _jacobian(jets, first, k, f, v):
-    """f Jr(f v) from the jet of f v."""
-    return spun(f, -jets[first, k] * jets[first, k], jets[first + 2, k], f * v)
+def _rows(a, first, start):
+    """Three rows from a column on.
+
+    An index that starts at 0 there cannot be negative, which keeps loops free of checks.
+    """
+    return a[first, start:], a[first + 1, start:], a[first + 2, start:]
 
 
 @inlined
-def _turn_back(jets, first, k, v):
-    """R(exp(v))^T from the jet of v."""
-    s, c = jets[first, k], jets[first + 1, k]
-    return spun(1.0, -2.0 * s * c, 2.0 * s * s, v)
+def _column(rows, k):
+    x, y, z = rows
+    return Vec(x[k], y[k], z[k])
+
+
+@inlined
+def _jacobian(jet, k, f, v):
+    """f Jr(f v) from the jets of f v."""
+    s, _, b = jet
+    return spun(f, -s[k] * s[k], b[k], f * v)
+
+
+@inlined
+def _turn_back(jet, k, v):
+    """R(exp(v))^T from the jets of v."""
+    s, c, _ = jet
+    return spun(1.0, -2.0 * s[k] * c[k], 2.0 * s[k] * s[k], v)
 
 
 @inlined
 def put_block(sheet, first, j, m):
     """Write a block down column j of the sheet, from a row on."""
-    put_vec(sheet[first:, j], 0, m.a)
-    put_vec(sheet[first:, j], 3, m.b)
-    put_vec(sheet[first:, j], 6, m.c)
+    c = sheet[first:, j]
+    put_vec(c, 0, m.a)
+    put_vec(c, 3, m.b)
+    put_vec(c, 6, m.c)
 
 
 @inlined
@@ -152,30 +168,33 @@ def block(sheet, first, j):
     return Mat(vec_at(c, 0), vec_at(c, 3), vec_at(c, 6))
 
 
-@compiled
+@inlined
 def set_knot_blocks(start, count, m, p, w, jets, sheet):
     """How K_k changes in its own left frame: dK = (P_k d(w_{k+1}) - M_k d(w_k)) K; here
 
     P_k = p R(exp(-m w_k)) Jl(p w_{k+1}), and M_k = m Jr(m w_k) where it is needed.
     """
-    # slices: an index that starts at 0 cannot be negative, which keeps the loop free of checks
-    w, jets, m, p = w[:, start:], jets[:, start:], m[start:], p[start:]
+    w, m, p = _rows(w, 0, start), m[start:], p[start:]
+    before, after = _rows(jets, BEFORE, start), _rows(jets, AFTER, start)
     for k in range(count):
-        turn = _turn_back(jets, BEFORE, k, m[k] * vec_column(w, k))
-        left = _jacobian(jets, AFTER, k, p[k], -vec_column(w, k + 1))
+        turn = _turn_back(before, k, m[k] * _column(w, k))
+        left = _jacobian(after, k, p[k], -_column(w, k + 1))
         put_block(sheet, UPPER, k, turn * left)
 
 
-@compiled
+@inlined
 def set_row_blocks(start, count, m, w, jets, sheet):
     """Blocks of rows k = start ... of Newton's system, see `assemble`."""
-    w, jets, m = w[:, start:], jets[:, start:], m[start:]
+    w, m = _rows(w, 0, start), m[start:]
+    before, whole = _rows(jets, BEFORE, start), _rows(jets, WHOLE, start)
     for k in range(count):
-        step = vec_column(w, k + 1)
-        back = _turn_back(jets, WHOLE, k, step)
-        own = _jacobian(jets, WHOLE, k, 1.0, step) - _jacobian(jets, BEFORE, k + 1, m[k + 1], step)
-        put_block(sheet, LOWER, k, back * _jacobian(jets, BEFORE, k, m[k], vec_column(w, k)))
-        put_block(sheet, OWN, k, own - back * block(sheet, UPPER, k))
+        step = _column(w, k + 1)
+        back = _turn_back(whole, k, step)
+        own = _jacobian(whole, k, 1.0, step) - _jacobian(before, k + 1, m[k + 1], step)
+        own = own - back * block(sheet, UPPER, k)  # read before anything is written, to vectorise
+        lower = back * _jacobian(before, k, m[k], _column(w, k))
+        put_block(sheet, LOWER, k, lower)
+        put_block(sheet, OWN, k, own)
 
 
 @compiled

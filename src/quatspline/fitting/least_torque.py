@@ -61,8 +61,9 @@ def _copy(source, target):
 
 @compiled
 def minimise(nodes, rates, h, m, tolerance, limit, segments, report):
-    """Minimise (1) for every track; fills segments and report, returns the energies, and which tracks came to
-    rest at rounding, at a change above the tolerance.
+    """Minimise (1) for every track; fills segments and report.
+
+    Returns the energies, and which tracks came to rest at rounding, at a change above the tolerance.
     """
     energies, rest = np.empty(nodes.shape[0]), np.empty(nodes.shape[0], dtype=np.bool_)
     for k in range(nodes.shape[0]):

@@ -29,8 +29,8 @@ from quatspline.fitting.bspline_newton import (
 )
 from quatspline.fitting.nu_rows import assemble, leg_end, leg_start, look
 from quatspline.kernels.jit import CHANGE, ITERATIONS, RESIDUAL, compiled
+from quatspline.kernels.quick import exp
 from quatspline.kernels.values import (
-    exp,
     keyframe,
     put_quat,
     put_quat_column,

@@ -24,9 +24,8 @@ from quatspline.fitting.block_tridiagonal import backward, forward
 from quatspline.fitting.bspline import set_phantoms
 from quatspline.kernels.jacobians import inverse_jacobian_matrix, jacobian_matrix, turn_matrix
 from quatspline.kernels.jit import compiled, inlined
+from quatspline.kernels.quick import exp, log
 from quatspline.kernels.values import (
-    exp,
-    log,
     put_quat_column,
     put_vec,
     put_vec_column,

@@ -14,6 +14,8 @@ import numpy as np
 from numba import carray
 
 from quatspline.inputs.arrays import FloatArray, IntArray
+from quatspline.kernels.compiler import machine
+from quatspline.kernels.intrinsics import at_address, call_fit, call_sample, on_stack, splat
 from quatspline.kernels.jit import (
     BLOCK,
     CONSTANTS,
@@ -22,30 +24,22 @@ from quatspline.kernels.jit import (
     RESULT,
     ROWS,
     UNREPORTED,
-    at_address,
-    call_fit,
-    call_sample,
     compiled,
     inlined,
-    on_stack,
-    splat,
 )
+from quatspline.kernels.locating import INSIDE, LONG, MIXED, locate
+from quatspline.kernels.values import put_quat, put_vec, quat_at, vec_at
 
 BATCH = 1024
 """Samples located at once, before their tracks are evaluated: within the first-level cache."""
 
-LONG = 16
-"""Samples of one segment in a row that are worth a block of their own."""
+SHARE = 8
+"""Tracks that share a whole batch; of more, batches are smaller, so that their results stay within the
+second-level cache until all tracks have written theirs beside one another."""
 
 SHEET = ROWS * BLOCK
 BLOCKS = BATCH // LONG + 2
 """The most blocks that a batch falls into: all but the last are long or mixed and full."""
-
-MIXED = -1
-"""In the place of a block's segment: its samples lie in several."""
-
-INSIDE = -1
-"""In the place of the first bad index: all samples lie in the domain."""
 
 KNOTS, COUNT, SEGMENTS, TRACKS, CONSTANT_COUNT, SIGNS, CLOSED = range(7)
 
@@ -67,7 +61,7 @@ def described(knots: FloatArray, segments: FloatArray, signs: FloatArray, closed
         if array.dtype != np.float64 or not array.flags.c_contiguous:
             raise ValueError("knots, segments and signs: C-contiguous float64 is expected")
     places = np.empty(CLOSED + 1, np.int64)
-    _describe(knots, segments, signs, closed, places)
+    machine(_describe)(knots, segments, signs, closed, places)
     return places
 
 
@@ -115,10 +109,10 @@ def sample(address, order, curve, origin, slack, t, out):
     where = carray(on_stack(BATCH), (BATCH,)).view(np.uint32)
     spans = carray(on_stack(BLOCKS), (BLOCKS,)).view(np.uint16)  # first sample, number of samples
     owner = carray(on_stack(BLOCKS), (BLOCKS,)).view(np.int64)  # the segment of a block
-    segment = 0
-    for start in range(0, t.size, BATCH):
-        batch = t[start : start + BATCH]
-        made, segment, wraps, bad = _locate(
+    segment, step = 0, max(min(BATCH, BATCH * SHARE // tracks), BLOCK)
+    for start in range(0, t.size, step):
+        batch = t[start : start + step]
+        made, segment, wraps, bad = locate(
             knots, closed, origin, slack, batch, segment, u, where, spans, owner
         )
         if bad != INSIDE:
@@ -140,116 +134,6 @@ def sample(address, order, curve, origin, slack, t, out):
             if order == 0 and wraps and signs[k] < 0.0:
                 _flip(batch, origin, knots[-1], own, tracks)
     return INSIDE
-
-
-@compiled
-def _locate(knots, closed, origin, slack, t, segment, u, where, spans, owner):
-    """Local parameter and segment of each sample, and the blocks that they form.
-
-    Returns the number of blocks, the last segment, whether any sample lies in another period, and
-    the first bad index.
-    """
-    made, start, wraps = 0, 0, False
-    while start < t.size:
-        first, n = np.uint16(start), np.uint16(min(BLOCK, t.size - start))
-        lo, hi = knots[segment], knots[segment + 1]
-        rate = 1.0 / (hi - lo)  # a product everywhere: long and mixed blocks agree
-        inside = 0
-        for j in range(n):
-            x = t[first + j] - origin
-            u[first + j] = (x - lo) * rate
-            inside += (x >= lo) & (x < hi)
-        count, i = inside, segment
-        if inside < n:
-            count = _leading(lo, hi, origin, t[start:])
-        if count < LONG and inside < n:
-            stop = start + n
-            segment, around, bad = _one_by_one(
-                knots,
-                closed,
-                origin,
-                slack,
-                t[start:stop],
-                segment,
-                u[start:stop],
-                where[start:stop],
-            )
-            if bad != INSIDE:
-                return made, segment, wraps, start + bad
-            wraps |= around
-            count, i = _run(where[start:stop])
-            if i != MIXED:
-                segment = i
-        spans[2 * made], spans[2 * made + 1], owner[made] = first, count, i
-        made += 1
-        start += count
-    return made, segment, wraps, INSIDE
-
-
-@compiled
-def _one_by_one(knots, closed, origin, slack, t, segment, u, where):
-    """Local parameters and segments of samples of any order and place; see `_locate`."""
-    wraps = False
-    for j in range(t.size):
-        x = t[j] - origin
-        if not (x >= 0.0 and x < knots[-1]):
-            if closed and abs(x) < np.inf:
-                x = _wrapped(x, knots[-1])
-                wraps = True
-            elif not closed and x >= -slack and x <= knots[-1] + slack:
-                x = min(max(x, 0.0), knots[-1])
-            else:
-                return segment, wraps, j
-        if not (x >= knots[segment] and x < knots[segment + 1]):
-            segment = _find(knots, x, segment)
-        where[j] = segment
-        u[j] = (x - knots[segment]) * (1.0 / (knots[segment + 1] - knots[segment]))
-        if x >= knots[segment + 1]:  # the end of an open curve is its last keyframe, not a rounding
-            u[j] = 1.0
-    return segment, wraps, INSIDE
-
-
-@inlined
-def _leading(lo, hi, origin, t):
-    """Samples in a row from the first on that lie in a segment, at most a block less one."""
-    n = 0
-    while n < min(BLOCK - 1, t.size) and t[n] - origin >= lo and t[n] - origin < hi:
-        n += 1
-    return n
-
-
-@inlined
-def _run(where):
-    """Samples and segment of the block that begins here: a long run, or all, mixed."""
-    n = 1
-    while n < where.size and where[n] == where[0]:
-        n += 1
-    if n >= LONG or n == where.size:
-        return n, where[0]
-    return min(where.size, BLOCK - LANES), MIXED
-
-
-@inlined
-def _wrapped(x, period):
-    """The time within the first period."""
-    return min(max(x - math.floor(x / period) * period, 0.0), period)
-
-
-@inlined
-def _find(knots, x, segment):
-    """The segment of x: the next one in a sorted sweep, the one of even knots, or by bisection."""
-    last = knots.size - 2
-    if segment < last and x >= knots[segment + 1] and x < knots[segment + 2]:
-        return segment + 1
-    even = min(int(x / knots[-1] * (last + 1)), last)
-    if x >= knots[even] and x < knots[even + 1]:
-        return even
-    low, size = 0, last + 1
-    while size > 1:  # without branches: an unforeseen one costs more than the whole step
-        half = size >> 1
-        low = low + half if knots[low + half] <= x else low
-        size -= half
-    return low
 
 
 @inlined
@@ -277,45 +161,39 @@ def _gather(sheet, knots, segments, where, first, n):
         while stop < n and where[first + stop] == i:
             stop += 1
         rate = 1.0 / (knots[i + 1] - knots[i])
-        for j in range(start, stop, LANES):
-            splat(sheet, BLOCK + j, rate)
-        for c in range(segments.shape[1]):
-            value = segments[i, c]
+        if stop - start <= LANES:  # one vector each: a loop of one turn costs more than the store
+            splat(sheet, BLOCK + start, rate)
+            for c in range(segments.shape[1]):
+                splat(sheet, BLOCK * (CONSTANTS + c) + start, segments[i, c])
+        else:
             for j in range(start, stop, LANES):
-                splat(sheet, BLOCK * (CONSTANTS + c) + j, value)
+                splat(sheet, BLOCK + j, rate)
+            for c in range(segments.shape[1]):
+                value = segments[i, c]
+                for j in range(start, stop, LANES):
+                    splat(sheet, BLOCK * (CONSTANTS + c) + j, value)
         start = stop
 
 
 @inlined
 def _store(sheet, order, out, first, n, tracks):
     """The result rows, component first, into out, sample first."""
-    if order == 0 and tracks == 1:  # a constant stride: the stores vectorise
-        _store_quaternions(sheet, out, first, 4, n)
+    if order == 0 and tracks == 1:  # a constant stride, and no value between: the stores vectorise
+        for j in range(n):
+            at = 4 * (first + j)
+            out[at] = sheet[RESULT, j]
+            out[at + 1] = sheet[RESULT + 1, j]
+            out[at + 2] = sheet[RESULT + 2, j]
+            out[at + 3] = sheet[RESULT + 3, j]
     elif order == 0:
-        _store_quaternions(sheet, out, first, 4 * tracks, n)
+        for j in range(n):
+            put_quat(out, 4 * tracks * (first + j), quat_at(sheet[RESULT:, j], 0))
     elif tracks == 1:
-        _store_rates(sheet, out, first, 3, n)
+        for j in range(n):
+            put_vec(out, 3 * (first + j), vec_at(sheet[RESULT:, j], 0))
     else:
-        _store_rates(sheet, out, first, 3 * tracks, n)
-
-
-@inlined
-def _store_quaternions(sheet, out, first, stride, n):
-    for j in range(n):
-        at = stride * (first + j)
-        out[at] = sheet[RESULT, j]
-        out[at + 1] = sheet[RESULT + 1, j]
-        out[at + 2] = sheet[RESULT + 2, j]
-        out[at + 3] = sheet[RESULT + 3, j]
-
-
-@inlined
-def _store_rates(sheet, out, first, stride, n):
-    for j in range(n):
-        at = stride * (first + j)
-        out[at] = sheet[RESULT, j]
-        out[at + 1] = sheet[RESULT + 1, j]
-        out[at + 2] = sheet[RESULT + 2, j]
+        for j in range(n):
+            put_vec(out, 3 * tracks * (first + j), vec_at(sheet[RESULT:, j], 0))
 
 
 @compiled

@@ -18,26 +18,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from types import FunctionType
 from typing import Any
 
-from numba import carray
-
-from quatspline.kernels.jit import (
-    BLOCK,
-    CONSTANTS,
-    RESULT,
-    ROWS,
-    Kernel,
-    inlined,
-    sample_kernel,
-)
-from quatspline.kernels.values import put_quat, put_vec, quat_at, restored, vec
+from quatspline.kernels import loops
+from quatspline.kernels.jit import CONSTANTS, RESULT, Kernel, inlined
+from quatspline.kernels.values import restored, vec
 
 Kernels = tuple[Kernel, Kernel, Kernel]
-
-ROUGH = 5e-7
-"""Squares of lengths off 1 by more than this are restored by a root: to 1e-13 without one."""
 
 
 @dataclass(frozen=True)
@@ -92,16 +81,29 @@ def family(
         count = whole
     if velocity is None or acceleration is None:
         raise TypeError("a family needs a jet, or a velocity and an acceleration")
-    if spare is None:
-        orientation = _bound(_orientation, FUNCTION=point)
-    else:
-        orientation = _bound(_unit_orientation, FUNCTION=point, SPARE=spare)
     near = (
-        sample_kernel(orientation),
-        sample_kernel(_bound(_velocity, FUNCTION=velocity, COUNT=count)),
-        sample_kernel(_bound(_acceleration, FUNCTION=acceleration, COUNT=count)),
+        _orientations(point, spare),
+        Kernel(
+            partial(_bound, loops.velocity, FUNCTION=velocity, COUNT=count),
+            "sample",
+            lambda c, u, rate: (2.0 * rate) * velocity(c, u),
+        ),
+        Kernel(
+            partial(_bound, loops.acceleration, FUNCTION=acceleration, COUNT=count),
+            "sample",
+            lambda c, u, rate: (2.0 * rate * rate) * acceleration(c, u),
+        ),
     )
     return Family(constants, near=near, far=near if far is None else far.near)
+
+
+def _orientations(point: Callable[..., Any], spare: Callable[..., Any] | None) -> Kernel:
+    """The kernel of orientations, restored to unit length where there is something to spare."""
+    if spare is None:
+        make = partial(_bound, loops.orientation, FUNCTION=point)
+        return Kernel(make, "sample", lambda c, u, rate: point(c, u))
+    make = partial(_bound, loops.unit_orientation, FUNCTION=point, SPARE=spare)
+    return Kernel(make, "sample", lambda c, u, rate: restored(point(c, u), spare(c, u)))
 
 
 @inlined
@@ -123,7 +125,7 @@ def whole(n):
 def _bound(template: Callable[..., Any], **functions: Callable[..., Any]) -> Callable[..., Any]:
     """A copy of a template with functions as globals, in the file and at the line of the first."""
     first, *_ = functions.values()
-    name = "_".join([called(f) for f in functions.values()]) + template.__name__
+    name = "_".join([*(called(f) for f in functions.values()), template.__name__])
     code = template.__code__.replace(
         co_filename=first.__code__.co_filename,
         co_firstlineno=first.__code__.co_firstlineno,
@@ -141,43 +143,7 @@ def called(function: Callable[..., Any]) -> str:
 
 
 FUNCTION: Any = None
-SPARE: Any = None
-COUNT: Any = None
-"""What a copy of a template finds in their place."""
-
-
-def _orientation(sheet, n):
-    s = carray(sheet, (ROWS, BLOCK))
-    for j in range(n):
-        put_quat(s[RESULT:, j], 0, FUNCTION(s[CONSTANTS:RESULT, j], s[0, j]))
-
-
-def _unit_orientation(sheet, n):
-    s = carray(sheet, (ROWS, BLOCK))
-    rough = 0
-    for j in range(n):
-        q = FUNCTION(s[CONSTANTS:RESULT, j], s[0, j])
-        # off by e, 1.5 - |q|^2 / 2 restores the length to 3/2 e^2, without a root and a division
-        fine = abs(q @ q - 1.0) <= ROUGH
-        put_quat(s[RESULT:, j], 0, (1.5 - 0.5 * (q @ q) if fine else 1.0) * q)
-        rough += 0 if fine else 1
-    if rough > 0:
-        for j in range(n):
-            spare = SPARE(s[CONSTANTS:RESULT, j], s[0, j])
-            put_quat(s[RESULT:, j], 0, restored(quat_at(s[RESULT:, j], 0), spare))
-
-
-def _velocity(sheet, n):
-    s = carray(sheet, (ROWS, BLOCK))
-    for j in range(COUNT(n)):
-        put_vec(s[RESULT:, j], 0, (2.0 * s[1, j]) * FUNCTION(s[CONSTANTS:RESULT, j], s[0, j]))
-
-
-def _acceleration(sheet, n):
-    s = carray(sheet, (ROWS, BLOCK))
-    for j in range(COUNT(n)):
-        rate = 2.0 * s[1, j] * s[1, j]
-        put_vec(s[RESULT:, j], 0, rate * FUNCTION(s[CONSTANTS:RESULT, j], s[0, j]))
+"""What a copy of `_first` and `_second` finds in its place."""
 
 
 def _first(c, u):

@@ -15,7 +15,7 @@ angle, however small, loses digits.
 from __future__ import annotations
 
 from quatspline.kernels.jit import inlined
-from quatspline.kernels.scalars import NEAR, series, series_slopes, sinc
+from quatspline.kernels.scalars import FITTED, series, series_slopes, sinc
 from quatspline.kernels.values import Mat, Vec, cross
 
 SERIES = 1.0
@@ -49,7 +49,7 @@ def coefficients(z):
 @inlined
 def inverse_coefficient(z):
     """k and dk/dz for any angle; singular where |v| is a multiple of pi but 0."""
-    if z < NEAR * NEAR:
+    if z < FITTED:
         s, c = series(z)
         ds, dc = series_slopes(z)
         d = 1.0 / (1.0 + z * s)

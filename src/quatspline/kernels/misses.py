@@ -12,15 +12,14 @@ import numpy as np
 from numba import carray
 
 from quatspline.kernels.driver import SHEET
+from quatspline.kernels.intrinsics import call_sample, on_stack
 from quatspline.kernels.jit import (
     BLOCK,
     CONSTANTS,
     RESULT,
     ROWS,
-    call_sample,
     compiled,
     inlined,
-    on_stack,
 )
 from quatspline.kernels.values import arc, keyframe, quat_at
 

@@ -12,6 +12,8 @@ Python runs the same formulas.
 ``a + b``, ``a - b``, ``-a``
 ==========  =============================================================================
 
+It is longer than other modules because kernels are written in these words and no others.
+
 Logarithms are half rotation vectors: ``exp(v) = (cos |v|, v sin |v| / |v|)``, and ``log`` is its
 inverse on the ball |v| <= pi.
 """
@@ -19,20 +21,12 @@ inverse on the ball |v| <= pi.
 from __future__ import annotations
 
 import math
-import operator
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from numba.core import types
-from numba.extending import overload
+from quatspline.kernels.jit import inlined
+from quatspline.kernels.scalars import ANTIPODAL_SINE, TINY, arctan, sinc, sincos
 
-from quatspline.kernels.jit import SETTINGS, inlined
-from quatspline.kernels.scalars import ANTIPODAL_SINE, NEAR, TINY, arctan, sinc, sinc_near, sincos
-
-SHORT = 1e-3
-"""Squares up to which five terms of the arc tangent are exact to rounding."""
-
-# The formulas of operators are methods; `_teach` tells compiled code of them.
+# The formulas of operators are methods; `compiler` tells compiled code of them.
 
 
 class Quat(NamedTuple):
@@ -42,8 +36,6 @@ class Quat(NamedTuple):
     x: float
     y: float
     z: float
-
-    __array_ufunc__ = None  # a number of numpy times a value asks the value
 
     def __mul__(self, q):
         return Quat(
@@ -79,8 +71,6 @@ class Vec(NamedTuple):
     y: float
     z: float
 
-    __array_ufunc__ = None
-
     def __rmul__(self, f):
         return Vec(f * self.x, f * self.y, f * self.z)
 
@@ -104,8 +94,6 @@ class Mat(NamedTuple):
     b: Vec
     c: Vec
 
-    __array_ufunc__ = None
-
     def __mul__(self, m):
         return Mat(self @ m.a, self @ m.b, self @ m.c)
 
@@ -125,41 +113,10 @@ class Mat(NamedTuple):
         return Mat(-self.a, -self.b, -self.c)
 
 
-SYMBOLS = {
-    operator.mul: "__mul__",
-    operator.add: "__add__",
-    operator.sub: "__sub__",
-    operator.matmul: "__matmul__",
-    operator.neg: "__neg__",
-    operator.invert: "__invert__",
-}
-_timed = {cls: inlined(cls.__rmul__) for cls in (Quat, Vec, Mat)}
+for _cls in (Quat, Vec, Mat):
+    _cls.__array_ufunc__ = None  # type: ignore[union-attr]  # numpy's numbers, too, ask a for f * a
 
-
-def _class(kind: Any) -> Any:
-    """The class of a value, of the type that numba has for it; None for other types."""
-    cls = kind.instance_class if isinstance(kind, types.BaseNamedTuple) else None
-    return cls if cls in _timed else None
-
-
-def _teach(symbol: Callable[..., Any], name: str) -> None:
-    """Give an operator its formulas in compiled code."""
-
-    def unary(a):
-        return vars(_class(a)).get(name) if _class(a) else None
-
-    def binary(a, b):
-        if isinstance(a, types.Number) and symbol is operator.mul and _class(b):
-            times = _timed[_class(b)]
-            return lambda a, b: times(b, a)
-        return unary(a)
-
-    chosen = unary if symbol in (operator.neg, operator.invert) else binary
-    overload(symbol, jit_options={"forceinline": True, **SETTINGS}, strict=False)(chosen)
-
-
-for _symbol, _name in SYMBOLS.items():
-    _teach(_symbol, _name)
+Vec.__mul__ = None  # type: ignore[assignment]  # a tuple times 2 is one twice as long
 
 
 # -- parts and rows of arrays ---------------------------------------------------------------------
@@ -268,11 +225,7 @@ def unit(a):
 @inlined
 def exp(v):
     """The unit quaternion exp(v)."""
-    z = v @ v
-    if z < NEAR * NEAR:
-        s, c = sinc_near(z)
-    else:
-        s, c = sinc(z)
+    s, c = sinc(v @ v)
     return polar_exp(s, c, v)
 
 
@@ -285,14 +238,11 @@ def polar_exp(s, c, n):
 @inlined
 def log(q):
     """The principal logarithm, |log| <= pi; of -1, which has none, pi about the first axis."""
-    n = vec(q) @ vec(q)
-    if q.w > 0.0 and n < SHORT * q.w * q.w:
-        k = 1.0 / q.w
-        t = n * k * k
-        return (k - k * t * (1 / 3 - t * (1 / 5 - t * (1 / 7 - t * (1 / 9 - t / 11))))) * vec(q)
-    length = math.sqrt(n)
+    length = norm(vec(q))
     if length < TINY:
-        return Vec(math.pi, 0.0, 0.0)
+        if q.w < 0.0:
+            return Vec(math.pi, 0.0, 0.0)
+        return Vec(q.x / q.w, q.y / q.w, q.z / q.w)
     return (math.atan2(length, q.w) / length) * vec(q)
 
 

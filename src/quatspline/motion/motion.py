@@ -220,7 +220,7 @@ class Motion:
         ConvergenceError
             Where a solver fails on a track, which it names.
         """
-        from quatspline.motion.motion_curve import resampled
+        from quatspline.motion.resampling import resampled
 
         return resampled(self, rate, scheme, times, positions, options)
 
@@ -253,11 +253,18 @@ def _check_shapes(motion: Motion) -> None:
         raise ValueError(
             f"quaternions has shape {q.shape}: expected ({n}, {tracks}, 4) for {n} stamps, {tracks} tracks"
         )
+    if len(set(motion.tracks)) < tracks:
+        again = next(name for name in motion.tracks if list(motion.tracks).count(name) > 1)
+        raise ValueError(f"tracks: two are called {again!r}")
     if motion.per_second not in UNITS:
         raise ValueError(f"per_second = {motion.per_second}: one of {UNITS} is expected")
     if motion.skeleton is not None and len(motion.skeleton.parents) != tracks:
         raise ValueError(
             f"the skeleton has {len(motion.skeleton.parents)} joints for {tracks} tracks"
         )
+    for name in ("in_tangents", "out_tangents"):
+        tangents = getattr(motion, name)
+        if tangents is not None and np.shape(tangents) != q.shape:
+            raise ValueError(f"{name} has shape {np.shape(tangents)}: expected {q.shape}")
     if x is not None and x.shape != (n, tracks, 3):
         raise ValueError(f"positions has shape {x.shape}: expected ({n}, {tracks}, 3)")

@@ -6,8 +6,8 @@ the bound; what comes out is measured once more on all frames.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quatspline import catalogue, quaternion
-from quatspline.motion.motion_curve import named
+from quatspline.motion.resampling import named
+from quatspline.options import among
 from quatspline.quaternion import FloatArray
 from quatspline.solving import ConvergenceError
 
@@ -31,6 +32,10 @@ FAR = 24
 of 3 to 4 per keyframe.  What that leaves over is found when all frames are measured."""
 
 
+TRIED = 30
+"""Iterations of a solver while keyframes are tried: one that does not settle would take all of its own."""
+
+
 @dataclass(frozen=True, eq=False)
 class Reduction:
     """Keyframes of a motion; see `Motion.reduce`.
@@ -40,17 +45,24 @@ class Reduction:
     frames : indices of the frames that are kept, by joint
     motion : rebuilt from them at the times of the source; positions are the source's
     largest : the largest local angle (rad) of a joint at a frame left out
+    failures : why the scheme has no curve for a joint, which then keeps all of its frames
     """
 
     frames: dict[str, Frames]
     motion: Motion
     largest: float
+    failures: dict[str, str] = field(default_factory=dict)
 
 
 def reduction(
-    motion: Motion, scheme: str, error: float, together: bool, options: dict[str, Any]
+    motion: Motion,
+    scheme: str,
+    error: float,
+    together: bool,
+    options: dict[str, Any],
+    progress: Callable[[list[slice]], Iterable[slice]] = iter,
 ) -> Reduction:
-    """See `Motion.reduce`."""
+    """See `Motion.reduce`; ``progress`` goes over the joints, and may say so."""
     if not (isinstance(error, int | float | np.floating) and 0.0 < error < np.inf):
         raise ValueError(f"error={error!r}: a positive angle in rad is expected")
     if len(motion.edges) > 2:
@@ -61,17 +73,23 @@ def reduction(
         raise ValueError("an open motion of at least 2 frames is expected")
     names = list(motion.tracks)
     groups = [slice(0, len(names))] if together else [slice(k, k + 1) for k in range(len(names))]
-    rebuilt = np.empty_like(motion.quaternions)
+    source = quaternion.normalise(motion.quaternions)
+    rebuilt = source.copy()
     frames: dict[str, Frames] = {}
-    for group in groups:
-        q = quaternion.normalise(motion.quaternions[:, group])
+    errors: dict[str, ConvergenceError] = {}
+    for group in progress(groups):
+        track = _Track(motion.times, source[:, group], scheme, error, options)
+        keys = np.arange(len(motion.times))
         try:
-            keys, rebuilt[:, group] = _Track(motion.times, q, scheme, error, options).reduced()
-        except (ConvergenceError, ValueError) as failure:
-            raise named(", ".join(names[group]), failure) from failure
+            keys, rebuilt[:, group] = track.reduced()
+        except ConvergenceError as failure:
+            errors |= dict.fromkeys(names[group], failure)
         frames |= dict.fromkeys(names[group], keys)
-    largest = float(quaternion.distance(rebuilt, quaternion.normalise(motion.quaternions)).max())
-    return Reduction(frames, motion.moved(motion.stamps, rebuilt, motion.positions), largest)
+    if len(errors) == len(names):
+        raise named(names[0], errors[names[0]])
+    largest = float(quaternion.distance(rebuilt, source).max())
+    whole = motion.moved(motion.stamps, rebuilt, motion.positions)
+    return Reduction(frames, whole, largest, {name: str(e) for name, e in errors.items()})
 
 
 class _Track:
@@ -85,34 +103,41 @@ class _Track:
         self.least = min(max(cls.min_keyframes, 2), len(t))
         self.margin = (cls.support or FAR) // 2
         self.build: Callable[..., Curve] = partial(catalogue.build, scheme, **options)
+        # A solve on few keyframes may fail where more succeed: frames judge what it gives, not its report.
+        self.excused = among(cls, {"on_failure": "return"})
+        self.tried = among(cls, {"max_iterations": TRIED} | self.excused) | options
 
     def reduced(self) -> tuple[Frames, FloatArray]:
-        """Keyframes, and what they rebuild."""
+        """Keyframes, and what they rebuild.
+
+        Raises
+        ------
+        ConvergenceError
+            Where the solver fails on the keyframes that were found, or on all frames.
+        """
         keys = np.unique(np.linspace(0, len(self.t) - 1, self.least).astype(int))
-        keys = self._trimmed(self._within(keys))
-        keys = self._within(keys)  # all frames are measured, once more
-        return keys, self._curve(keys)(self.t)
+        keys = self._trimmed(self._within(keys, self.tried))
+        keys = self._within(keys, self.excused)  # all frames are measured, once more
+        return keys, self.build(self.t[keys], self.q[keys])(self.t)
 
-    def _curve(self, keys: Frames) -> Curve:
-        return self.build(self.t[keys], self.q[keys])
-
-    def _errors(self, keys: Frames, first: int, last: int) -> FloatArray:
+    def _errors(self, keys: Frames, first: int, last: int, options: dict[str, Any]) -> FloatArray:
         """Angles of the frames from first to last, the largest of all joints."""
-        rebuilt = self._curve(keys)(self.t[first : last + 1])
+        curve = self.build(self.t[keys], self.q[keys], **options)
+        rebuilt = curve(self.t[first : last + 1])
         angles = quaternion.distance(rebuilt, self.q[first : last + 1])
         return np.asarray(angles.max(axis=1))
 
-    def _within(self, keys: Frames) -> Frames:
+    def _within(self, keys: Frames, options: dict[str, Any]) -> Frames:
         """Keyframes with the worst frame of each segment beyond the bound added, until none is."""
         while True:
-            errors = self._errors(keys, 0, len(self.t) - 1)
-            errors[keys] = 0.0
-            starts = keys[:-1]
-            worst = np.maximum.reduceat(errors, starts)
-            beyond = np.flatnonzero(worst > self.bound)
+            errors = self._errors(keys, 0, len(self.t) - 1, options)
+            worst = np.maximum.reduceat(errors, keys[:-1])
+            worst = np.maximum(worst, errors[keys[1:]])
+            beyond = np.flatnonzero(~(worst <= self.bound) & (np.diff(keys) > 1))
             if not beyond.size:
                 return keys
-            new = [starts[i] + int(np.argmax(errors[keys[i] : keys[i + 1]])) for i in beyond]
+            inner = [errors[keys[i] + 1 : keys[i + 1]] for i in beyond]
+            new = [keys[i] + 1 + int(np.argmax(e)) for i, e in zip(beyond, inner, strict=True)]
             keys = np.union1d(keys, new)
 
     def _trimmed(self, keys: Frames) -> Frames:
@@ -132,5 +157,5 @@ class _Track:
         around = keys[max(first - self.margin, 0) : last + self.margin + 1]
         if len(around) < self.least:
             around = keys
-        errors = self._errors(around, int(keys[first]), int(keys[last]))
+        errors = self._errors(around, int(keys[first]), int(keys[last]), self.tried)
         return bool(errors.max() <= self.bound)

@@ -7,10 +7,8 @@ in the body frame.  Faults stay in: they are measured, by version.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,6 +17,7 @@ from quatspline import quaternion
 from quatspline.curve import Curve
 from quatspline.keyframes import Keyframes
 from quatspline.quaternion import FloatArray
+from quatspline.system.caching import cache_base
 from quatspline.system.forking import undivided
 from quatspline.system.quiet import quiet
 
@@ -50,10 +49,9 @@ def _alone(library: str) -> Iterator[None]:
 
 def _lock() -> Any:
     """A lock of this user's processes, taken; None where there is no place for one."""
-    import platformdirs
     from filelock import FileLock
 
-    base = Path(os.environ.get("QUATSPLINE_CACHE") or platformdirs.user_cache_dir("quatspline"))
+    base = cache_base()
     try:
         base.mkdir(parents=True, exist_ok=True)
         lock = FileLock(base / "peers.lock")

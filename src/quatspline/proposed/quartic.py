@@ -15,8 +15,14 @@ class QuarticSpline(SegmentCurve):
     """Quartic interpolatory unit quaternion spline of Xing, Fan, Tan & Xu (2017).
 
     C^2, interpolating, local (four keyframes shape a segment), one product of three exponentials
-    a sample [xing2017, (1)-(5)], here on arbitrary knots and closed too.  Approximates smooth motion to
-    order 2: the second derivative at a keyframe is three times the three-point estimate.
+    a sample [xing2017, (1)-(5)]: with L_j = ln(q_j^-1 q_{j+1}) and u from 0 to 1 on segment i,
+
+        Q(u) = q_{i-1} exp(B_1(u) L_{i-1}) exp(B_2(u) L_i) exp(B_3(u) L_{i+1})                   (1)
+        B_1 = 1 + u (1 - u)^3 / 2,  B_2 = u/2 + 3u^2/2 - u^3,  B_3 = -u^3 (1 - u) / 2            (2)
+
+    (2) is for uniform knots.  `fitting.four_keyframes` takes any, and closed curves, by what (2) is
+    made to meet at keyframes, the second derivative being kappa = 3 times the three-point estimate:
+    for which smooth motion is approximated to order 2 only.  Its f_1 is B_1 - 1, after q_i.
 
     Examples
     --------
@@ -37,4 +43,4 @@ class QuarticSpline(SegmentCurve):
     operations = Operations(exps=Per(sample=3), logs=Per(segment=1))
 
     def _fit(self, keyframes: Keyframes) -> None:
-        self._solve(FIT, np.array([3.0]))
+        self._solve(FIT, np.array([3.0]))  # kappa: `four_keyframes` (3)

@@ -27,6 +27,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from quatspline import catalogue
+from quatspline.kernels.engine import always_compiled
 from quatspline.runs import experiment
 from quatspline.runs.experiment import Run
 from quatspline.runs.journal import Cell, Kept, key
@@ -219,7 +220,8 @@ def _measured(place: int, name: str, run: Run, cell: Cell) -> Done:
     """Measure a cell of an experiment that is found by its name (modules do not travel)."""
     try:
         module = catalogue.load(experiment.files()[name], "experiment")
-        rows = module.measure_cell(run, **cell)
+        with always_compiled():  # in a worker, too
+            rows = module.measure_cell(run, **cell)
         listed = [rows] if isinstance(rows, dict) else list(rows)
         return Done(place, json.dumps(listed, default=_plain))
     except Exception as error:  # told once the other cells are kept

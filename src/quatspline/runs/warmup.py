@@ -1,4 +1,4 @@
-"""Compile every kernel once, so that no measurement waits: ``python -m quatspline.runs.warmup``."""
+"""Compile every kernel once, so that nothing waits: ``quatspline warmup``."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from quatspline import quaternion
 from quatspline.catalogue import found, scheme, schemes
+from quatspline.kernels.engine import always_compiled, mark_warm
 from quatspline.segments import SegmentCurve
 
 
@@ -25,12 +26,13 @@ def compiled_schemes() -> list[str]:
 
 def warm_up(name: str) -> None:
     """Build and evaluate one compiled scheme on a few keyframes, all orders, both angle ranges."""
-    curve = scheme(name)(None, _keyframes())
-    assert isinstance(curve, SegmentCurve)
-    for order in curve.orders:
-        for kernels in (curve.family.near, curve.family.far):
-            curve.kernels = kernels
-            curve(0.5, order)
+    with always_compiled():
+        curve = scheme(name)(None, _keyframes())
+        assert isinstance(curve, SegmentCurve)
+        for order in curve.orders:
+            for kernels in (curve.family.near, curve.family.far):
+                curve.kernels = kernels
+                curve(0.5, order)
 
 
 def _keyframes() -> quaternion.FloatArray:
@@ -42,12 +44,14 @@ def main() -> None:
     start = time.perf_counter()
     names = compiled_schemes()
     warm_up("slerp")  # what all schemes share, before processes part
-    quaternion.log(quaternion.mul(_keyframes(), quaternion.conj(_keyframes())))
+    with always_compiled():
+        quaternion.log(quaternion.mul(_keyframes(), quaternion.conj(_keyframes())))
     for name in schemes():  # peers with compiled caches of their own fill them in one process
         if scheme(name).peer is not None:
             scheme(name)(None, _keyframes())([0.5, 1.5])
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         list(pool.map(warm_up, names))
+    mark_warm()
     print(f"compiled {len(names)} schemes in {time.perf_counter() - start:.0f} s", file=sys.stderr)
 
 

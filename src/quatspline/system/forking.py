@@ -6,6 +6,10 @@ or a lock that it held, would stay so in the child, which would wait for it fore
 
 from __future__ import annotations
 
+# What takes locks of its own before a fork has to be there first: hooks run from the last to the first, and while
+# ours waits, imports of other threads may need those locks.
+import concurrent.futures.thread  # noqa: F401
+import logging  # noqa: F401
 import os
 import threading
 from collections.abc import Iterator

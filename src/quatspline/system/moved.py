@@ -15,6 +15,7 @@ MOVED = {
     "arguments": "cli.arguments",
     "atomic": "system.atomic",
     "experiment": "runs.experiment",
+    "forking": "system.forking",
     "families.bezier": "fitting.bezier",
     "families.block_tridiagonal": "fitting.block_tridiagonal",
     "families.bspline": "fitting.bspline",
@@ -43,6 +44,7 @@ MOVED = {
     "instruments.timing": "timing.interleaved",
     "journal": "runs.journal",
     "loading": "system.loading",
+    "locking": "system.locking",
     "logcurve": "log_curve",
     "numeric": "stencil",
     "orientations": "inputs.orientations",
@@ -52,22 +54,27 @@ MOVED = {
     "report.choosing": "findings.decisions",
     "report.findings": "findings.findings",
     "report.heat": "figures.heat",
+    "report.manifest": "runs.manifest",
     "report.motions": "figures.motions",
     "report.page": "page",
+    "report.provenance": "runs.provenance",
     "report.quotes": "findings.quotes",
     "report.results": "runs.results",
     "report.scenes": "figures.scenes",
     "report.shapes": "figures.meshes",
+    "report.store": "runs.store",
     "report.style": "figures.style",
     "report.targets": "findings.targets",
     "report.teapot": "figures.teapot",
     "rescue": "instruments.rescue",
     "running": "cli.running",
     "stamps": "inputs.stamps",
+    "stdout": "system.stdout",
     "sweeps": "runs.sweeps",
     "trajectories.edges": "trajectories.edge_cases",
     "trajectories.files": "motion.files",
     "warmup": "runs.warmup",
+    "words": "cli.words",
 }
 
 
@@ -78,10 +85,14 @@ class _Moved(MetaPathFinder, Loader):
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
         """Of a moved module, or of the package that is gone with all its modules."""
-        package, _, old = fullname.partition(".")
-        if package != "quatspline" or not (old in MOVED or old == "report"):
+        if not fullname.startswith("quatspline."):
             return None
-        return ModuleSpec(fullname, self, is_package=old == "report")
+        gone = fullname == "quatspline.report"
+        return (
+            ModuleSpec(fullname, self, is_package=gone)
+            if gone or today(fullname) != fullname
+            else None
+        )
 
     def create_module(self, spec: ModuleSpec) -> None:
         """As usual: an empty one."""
@@ -99,9 +110,13 @@ class _Moved(MetaPathFinder, Loader):
 def today(name: str) -> str:
     """The name that a module of this package, by whichever name, has today."""
     package, _, old = name.partition(".")
-    return f"{package}.{MOVED[old]}" if old in MOVED else name
+    for parts in range(old.count(".") + 1, 0, -1):  # a moved package takes its modules along
+        moved = ".".join(old.split(".")[:parts])
+        if moved in MOVED:
+            return f"{package}.{MOVED[moved]}{old.removeprefix(moved)}"
+    return name
 
 
 def install() -> None:
-    """Have the import system ask here last."""
-    sys.meta_path.append(_Moved())
+    """Have the import system ask here first: below a moved package it would find modules twice."""
+    sys.meta_path.insert(0, _Moved())

@@ -20,6 +20,7 @@ import numpy as np
 from quatspline.catalogue import scheme
 from quatspline.curve import Curve
 from quatspline.instruments.trials import reason
+from quatspline.kernels import engine
 from quatspline.options import among
 from quatspline.quaternion import FloatArray
 from quatspline.timing.budget import Budget, OverBudget, calls, seconds
@@ -115,6 +116,10 @@ def _floor(task: Task, name: str) -> Contender:
     return repeated(waves)
 
 
+JOINTS = 31
+FOUR_FRAMES, SET_UP_OF_JOINTS = "31 joints, four frames a segment", "set-up of 31 joints"
+"""A skeleton, and the tasks of one that was reduced to 2500 keyframes."""
+
 # -- tasks ---------------------------------------------------------------------------------------
 
 
@@ -132,7 +137,8 @@ def tasks(rng: np.random.Generator, quick: bool) -> list[Task]:
         return chosen
     dense = walk(rng, 20_000, DEGREES)[:, 0]
     few = np.linspace(0.0, len(dense) - 1.0, 3 * len(dense))
-    bones, frames = walk(rng, 300, DEGREES, 31), np.linspace(0.0, 299.0, 10_000)
+    bones, frames = walk(rng, 300, DEGREES, JOINTS), np.linspace(0.0, 299.0, 10_000)
+    reduced, sparse = walk(rng, 2500, DEGREES, JOINTS), np.linspace(0.0, 2499.0, 10_000)
     turns = np.tile(loop(rng, 1000, DEGREES)[:, 0], (1000, 1))
     return [
         *chosen,
@@ -140,7 +146,9 @@ def tasks(rng: np.random.Generator, quick: bool) -> list[Task]:
         evaluation("acceleration", keyframes, even, patience, order=2),
         evaluation("unsorted", keyframes, rng.permutation(even), patience),
         evaluation("three samples a segment", dense, few, patience),
-        evaluation("31-joint skeleton", bones, frames, patience, width=4 * 31),
+        evaluation("31-joint skeleton", bones, frames, patience, width=4 * JOINTS),
+        evaluation(FOUR_FRAMES, reduced, sparse, patience, width=4 * JOINTS),
+        set_up(SET_UP_OF_JOINTS, reduced),
         evaluation("two threads", keyframes, even, patience, threads=2),
         long_set_up("a million keyframes", turns),
     ]
@@ -243,19 +251,21 @@ print(time.perf_counter() - start)
 
 
 def starts(rounds: int, quick: bool) -> Iterator[tuple[str, list[float]]]:
-    """Seconds in new processes: the import; a first curve and sample from cached code.
+    """Seconds in new processes: the import; a first curve and sample in plain Python, and compiled.
 
     In full size also with its compilation.
     """
+    machine = {engine.VARIABLE: "compiled"}
     yield "import quatspline", [_seconds(_IMPORT) for _ in range(rounds)]
-    yield "first sample, code cached", [_seconds(_FIRST) for _ in range(rounds)]
+    yield "first sample", [_seconds(_FIRST) for _ in range(rounds)]
+    yield "first sample, code cached", [_seconds(_FIRST, **machine) for _ in range(rounds)]
     if quick:
         return
     with tempfile.TemporaryDirectory(prefix="quatspline-") as folder:
-        yield "first sample, compiling", [_seconds(_FIRST, QUATSPLINE_CACHE=folder)]
+        yield "first sample, compiling", [_seconds(_FIRST, QUATSPLINE_CACHE=folder, **machine)]
 
 
 def _seconds(script: str, **environment: str) -> float:
-    known = os.environ | environment
+    known = os.environ | {engine.VARIABLE: ""} | environment
     command = [sys.executable, "-c", script]
     return float(subprocess.run(command, env=known, capture_output=True, check=True).stdout)

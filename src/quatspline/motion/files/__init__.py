@@ -28,7 +28,16 @@ from quatspline.motion.motion import Motion
 from quatspline.options import nearest
 from quatspline.system.atomic import replacing
 
-__all__ = ["Motion", "MotionFileError", "Reading", "check_suffix", "read", "write", "write_csv"]
+__all__ = [
+    "Motion",
+    "MotionFileError",
+    "Reading",
+    "check_suffix",
+    "lenient",
+    "read",
+    "write",
+    "write_csv",
+]
 
 
 @dataclass(frozen=True)
@@ -40,6 +49,8 @@ class Format:
     takes: tuple[str, ...] = ()
     bones: bool = False
     """Whether it holds skeletons."""
+    tangents: bool = False
+    """Whether it holds the tangents of a glTF's cubic splines."""
 
 
 _ROWS = ("duplicates", "missing")
@@ -55,7 +66,7 @@ _FORMATS = {
     ".kitti": Format(
         partial(read_text, columns=KITTI_COLUMNS, unit="m"), None, (*_CLIP, "missing")
     ),
-    ".npz": Format(read_npz, write_npz, _ROWS, bones=True),
+    ".npz": Format(read_npz, write_npz, _ROWS, bones=True, tangents=True),
     ".bvh": Format(read_bvh, write_bvh, _CLIP, bones=True),
     ".amc": Format(read_amc, None, (*_CLIP, "skeleton", "units")),
     ".gltf": Format(read_gltf, None, _GLTF),
@@ -87,6 +98,8 @@ def write(path: str | Path, motion: Motion) -> None:
     writer = _writer(path)
     if motion.skeleton is not None and not _format(path).bones:
         warn(path, "the skeleton is not carried: .bvh, .glb and .npz hold it")
+    if motion.in_tangents is not None and not _format(path).tangents:
+        warn(path, "tangents of its splines are not carried: .npz holds them")
     path = Path(path)
     try:
         with replacing(path) as aside:
@@ -97,6 +110,16 @@ def write(path: str | Path, motion: Motion) -> None:
         raise MotionFileError(f"{path}: cannot be written: {error.strerror or error}") from None
     except ValueError as error:
         raise MotionFileError(f"{path}: {error}") from None
+
+
+def lenient(path: str | Path, reading: Reading) -> Reading:
+    """The same options, but that repeated stamps and rows without numbers are left out."""
+    takes = _format(path).takes
+    return replace(
+        reading,
+        duplicates="first" if "duplicates" in takes else "refuse",
+        missing="skip" if "missing" in takes else "refuse",
+    )
 
 
 def check_suffix(path: str | Path) -> None:

@@ -25,8 +25,8 @@ KINDS = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 INDICES = (5121, 5123, 5125)
 
-LARGEST = 10**8
-"""More numbers than this in an accessor are no keyframes."""
+LARGEST = 10**7
+"""More elements than this in an accessor (a day at 120 Hz) are no keyframes."""
 
 
 class Document:
@@ -168,6 +168,8 @@ class Document:
         self, accessor: dict[str, Any], count: int, dtype: np.dtype[Any], width: int
     ) -> NDArray[Any]:
         if "bufferView" not in accessor:
+            if "sparse" not in accessor:
+                self.refuse("an accessor without data")
             return np.zeros((count, width), dtype)
         return self._view(accessor, count, dtype, width)
 

@@ -38,8 +38,10 @@ class Sampler:
 
     def at(self, t: FloatArray) -> FloatArray:
         """Values (m, width) at times (m,), the ends' beyond them."""
-        if np.array_equal(t, self.times) or len(self.times) == 1:
-            return self.values if len(self.times) > 1 or len(t) == 1 else self.values[[0] * len(t)]
+        if np.array_equal(t, self.times):
+            return self.values
+        if len(self.times) == 1:
+            return np.repeat(self.values, len(t), axis=0)
         t = np.clip(t, self.times[0], self.times[-1])
         k = segment_of(self.times, t)
         if self.mode == "STEP":

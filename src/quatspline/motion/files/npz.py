@@ -27,10 +27,14 @@ from quatspline.quaternion import FloatArray
 REQUIRED = ("times", "quaternions")
 OF_SKELETON = ("parents", "offsets", "orders", "end_joints", "ends")
 MOUNTS = ("mount_turns", "mount_places")
-MORE = ("positions", "tracks", "unit", "per_second", *OF_SKELETON, *MOUNTS)
+TANGENTS = ("in_tangents", "out_tangents")
+MORE = (
+    *("positions", "tracks", "unit", "per_second", "interpolation"),
+    *(*OF_SKELETON, *MOUNTS, *TANGENTS),
+)
 """What `write_npz` writes, besides."""
 
-TEXTS = ("tracks", "unit", "orders")
+TEXTS = ("tracks", "unit", "orders", "interpolation")
 
 LARGEST = 10**8
 """More numbers than this in an array (0.8 GB of float64, a week at 40 Hz) are no keyframes."""
@@ -116,6 +120,11 @@ def _more(arrays: dict[str, Array], tracks: int) -> dict[str, Any]:
         found["unit"] = str(arrays["unit"])
     if "per_second" in arrays:
         found["per_second"] = int(arrays["per_second"])
+    if "interpolation" in arrays:
+        found["interpolation"] = str(arrays["interpolation"])
+    for name in TANGENTS:
+        if name in arrays:
+            found[name] = arrays[name].astype(float)
     if all(name in arrays for name in OF_SKELETON):
         found["skeleton"] = _skeleton(arrays, tracks)
         if all(name in arrays for name in MOUNTS):

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from decimal import Decimal
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, TextIO
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quatspline.motion.files.columns import (
     CSV_COLUMNS,
@@ -45,6 +46,20 @@ def write_csv(to: Path | TextIO, motion: Motion) -> None:
     _write(to, ",".join(columns), (",".join(row) for row in rows))
 
 
+def write_track_rows(path: Path, motion: Motion, frames: Mapping[str, NDArray[np.intp]]) -> None:
+    """Write some frames of each track as CSV, track by track."""
+    header = ",".join([STAMPS[motion.per_second], "track", "frame", *CSV_COLUMNS[1:]])
+    stamps = motion.stamps.tolist()
+
+    def rows() -> Iterator[str]:
+        for k, name in enumerate(motion.tracks):
+            index = frames[name].tolist()
+            for frame, q in zip(index, motion.quaternions[index, k].tolist(), strict=True):
+                yield ",".join([repr(stamps[frame]), _quoted(name), str(frame), *map(repr, q)])
+
+    _write(path, header, rows())
+
+
 def write_tum(to: Path | TextIO, motion: Motion) -> None:
     """Write a body's motion as a TUM trajectory, in seconds; positions are zeros where there are none."""
     _check_one(motion)
@@ -73,6 +88,11 @@ def write_npz(path: Path, motion: Motion) -> None:
         arrays["unit"] = np.array(motion.unit)
     if motion.per_second != 1:
         arrays["per_second"] = np.array(motion.per_second)
+    if motion.interpolation is not None:
+        arrays["interpolation"] = np.array(motion.interpolation)
+    for name in ("in_tangents", "out_tangents"):
+        if getattr(motion, name) is not None:
+            arrays[name] = getattr(motion, name)
     if motion.skeleton is not None:
         arrays |= _bones(motion.skeleton)
     with path.open("wb") as stream:  # given a name, savez would add a suffix

@@ -1,0 +1,92 @@
+"""What a motion is, in one screen: tracks, rate, gaps, steps, and the noise in them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from quatspline import quaternion
+from quatspline.motion.motion import Motion
+from quatspline.quaternion import FloatArray
+
+GAP = 5.0
+"""Spacings over this many medians are gaps."""
+
+THIRD = np.sqrt(20.0)
+"""The third difference of white noise is this many times as large as the noise."""
+
+NAMED = 8
+"""Names of tracks that are listed."""
+
+
+def summary(motion: Motion) -> list[str]:
+    """Lines about a motion."""
+    rows = {
+        "tracks": _tracks(motion),
+        "frames": f"{len(motion.quaternions)}{', closed' if motion.closed else ''}",
+        "start": f"{motion.start!r}, {motion.per_second:,} a second",
+        "positions": _positions(motion),
+    }
+    if len(motion.times) > 1:
+        rows |= {"duration": f"{motion.times[-1]:.6g} s", **_spacings(motion)}
+    if len(motion.quaternions) > 1:
+        rows["largest step"] = _step(motion)
+    if len(motion.quaternions) > 3 and not motion.closed:
+        rows["noise"] = _noise(motion)
+    if motion.unread:
+        rows["not read"] = ", ".join(motion.unread)
+    if motion.interpolation:
+        rows["interpolation"] = motion.interpolation
+    width = max(map(len, rows))
+    return [f"{name:{width}}  {text}" for name, text in rows.items()]
+
+
+def _tracks(motion: Motion) -> str:
+    names = list(motion.tracks)
+    more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
+    hung = ", a skeleton" if motion.skeleton is not None else ""
+    return f"{len(names)}{hung}: {', '.join(names[:NAMED])}{more}"
+
+
+def _positions(motion: Motion) -> str:
+    if motion.positions is None:
+        return "none"
+    moving = (np.ptp(motion.positions, axis=0) > 0.0).any(axis=-1)
+    unit = "metres" if motion.unit == "m" else "the file's unit"
+    return f"in {unit}, of {int(moving.sum())} tracks changing"
+
+
+def _spacings(motion: Motion) -> dict[str, str]:
+    steps = np.diff(motion.times)
+    median = float(np.median(steps))
+    gaps = np.flatnonzero(steps > GAP * median)
+    rate = f"{1.0 / median:.6g} Hz (median; spacings {steps.min():.4g} to {steps.max():.4g} s)"
+    if not gaps.size:
+        return {"rate": rate, "gaps": "none"}
+    worst = int(steps.argmax())
+    told = f"{gaps.size} over {GAP:g} median spacings, the longest {steps[worst]:.4g} s"
+    return {"rate": rate, "gaps": f"{told} after frame {worst}"}
+
+
+def _step(motion: Motion) -> str:
+    q = quaternion.normalise(motion.quaternions)
+    steps = quaternion.distance(q[1:], q[:-1])
+    frame, track = map(int, np.unravel_index(int(steps.argmax()), steps.shape))
+    angle = np.degrees(steps[frame, track])
+    return f"{angle:.4g} degrees, {motion.tracks[track]!r} from frame {frame} to {frame + 1}"
+
+
+def _noise(motion: Motion) -> str:
+    """Rotation vectors of what the steps differ by, differenced twice more: noise outweighs motion there."""
+    q = quaternion.align(quaternion.normalise(motion.quaternions))
+    turns = 2.0 * quaternion.log(_short(quaternion.mul(quaternion.conj(q[:-1]), q[1:])))
+    third = np.diff(turns, n=2, axis=0)
+    per_track = np.median(np.linalg.norm(third, axis=-1), axis=0)
+    track = int(per_track.argmax())
+    step = float(np.median(np.diff(motion.times)))
+    size, jerk = np.degrees(per_track[track]) / THIRD, per_track[track] / step**3
+    told = f"{size:.3g} degrees at most, jerk {jerk:.3g} rad/s^3"
+    return f"{told} ({motion.tracks[track]!r}, from third differences)"
+
+
+def _short(q: FloatArray) -> FloatArray:
+    return np.where(q[..., :1] < 0.0, -q, q)
