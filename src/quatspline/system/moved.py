@@ -21,7 +21,7 @@ MOVED = {
     "families.bspline": "fitting.bspline",
     "families.bspline_newton": "fitting.bspline_newton",
     "families.bspline_rows": "fitting.bspline_rows",
-    "families.driver": "kernels.driver",
+    "families.driver": "engines.driver",
     "families.four_keyframes": "fitting.four_keyframes",
     "families.least_torque": "fitting.least_torque",
     "families.local_rates": "fitting.local_rates",
