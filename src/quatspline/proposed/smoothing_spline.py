@@ -13,8 +13,8 @@ from quatspline.fitting.noise_level import noise_level
 from quatspline.fitting.smoothing import REST, Smoothing, Solution
 from quatspline.fitting.smoothing_search import Criterion, Search, gcv, reached, risk
 from quatspline.kernels.jit import REACH
-from quatspline.kernels.operations import Operations, Per
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.options import AtLeast, Count, OnFailure, Positive, per_keyframe
 from quatspline.quaternion import FloatArray
 from quatspline.segments import SegmentCurve
