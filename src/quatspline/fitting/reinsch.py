@@ -11,7 +11,7 @@ piecewise linear second derivative that those rates ask for.  A turn of r_i by d
     s_i by A_i delta_{i+1} - B_i delta_i,   A_i = Jr^-1(S_i)/h_i,   B_i = A_i^T,
     e_i by -M_i^-1 delta_i,                 M_i = Jl(e_i),                                      (2)
 
-so that, of the linearised (1), with D the derivative of d by -M^-1 delta,
+so that d changes by D M^-1 delta, and the minimum of the linearised (1) is at
 
     (R + lambda D W^-1 D^T) gamma = d + D e,    delta = M (e - lambda W^-1 D^T gamma).          (3)
 
