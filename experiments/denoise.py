@@ -59,7 +59,7 @@ def cells(run: Run) -> list[dict[str, Any]]:
     asked = list(dict.fromkeys([SLERP, *(run.schemes or CHOSEN)]))
     schemes = asked + (list(WAYS) if OURS in asked else [])
     sigmas = SIGMAS_QUICK if run.quick else SIGMAS
-    kept = {TUMBLE: TUMBLED_QUICK if run.quick else TUMBLED}
+    kept: dict[str, tuple[int, ...]] = {TUMBLE: TUMBLED_QUICK if run.quick else TUMBLED}
     kept |= dict.fromkeys(names(), KEPT_QUICK if run.quick else KEPT)
     found = [
         cell
@@ -74,8 +74,9 @@ def _is_told(scheme: str) -> bool:
 
 
 def measure_cell(run: Run, clip: str, every: int, noise_degrees: float, scheme: str) -> list[Row]:
-    given = {"clip": clip, "every": every, "noise_degrees": noise_degrees, "scheme": scheme}
-    return attempted(partial(_measured, run, **given), **given)
+    measured = partial(_measured, run, clip, every, noise_degrees, scheme)
+    case = {"clip": clip, "every": every, "noise_degrees": noise_degrees}
+    return attempted(measured, **case, scheme=scheme)
 
 
 def _measured(run: Run, clip: str, every: int, noise_degrees: float, scheme: str) -> list[Row]:
@@ -159,7 +160,7 @@ def caption(table: pd.DataFrame) -> str:
     return (
         "Errors to the truth at frames left out against the white noise added to the keyframes: (a) of orientation "
         "and (b) of angular velocity on a known motion, (c) of orientation on recordings as multiples of slerp's, "
-        f"geometric mean over joints ({len(clips)} clips). Interpolants pass the noise on; the smoothing spline chooses "
-        "by itself, by cross-validation (dashed) or for the noise as it is (dotted) how near to keep to its keyframes."
-        f"{made}"
+        f"geometric mean over joints ({len(clips)} clips). Interpolants pass the noise on; the smoothing spline "
+        "chooses by itself, by cross-validation (dashed) or for the noise as it is (dotted) how near to keep to its "
+        f"keyframes.{made}"
     )
