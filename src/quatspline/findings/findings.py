@@ -183,8 +183,8 @@ def _smoothing(cell: Ledger) -> tuple[Part, ...]:
     where = {"clip": "tumble", "every": 3, "noise_degrees": 1.0}
     angles = [cell("denoise", "rms_degrees", scheme=name, **where) for name in NAMED]
     return said(
-        "What smoothing buys: with white noise of {sigma:.0f} degree about each axis upon {keyframes:.0f} keyframes of a "
-        f"known motion the rms error is, in degrees, {_listed(NAMED, '.2f')}; of the angular velocity, in degrees a "
+        "What smoothing buys: with white noise of {sigma:.0f} degree about each axis upon {keyframes:.0f} keyframes of "
+        f"a known motion the rms error is, in degrees, {_listed(NAMED, '.2f')}; of the angular velocity, in degrees a "
         "second, {through:.3g} through the keyframes (local-quintic) and {near:.3g} near them. The noise is told from "
         "the keyframes as {told:.2f} degrees.",
         sigma=cell("denoise", "noise_degrees", scheme="slerp", **where),
@@ -206,8 +206,8 @@ def _unsmoothed(cell: Ledger) -> tuple[Part, ...]:
 
     noisy = ", ".join(f"{name} {{n{i}:.2f}}" for i, name in enumerate(names))
     return said(
-        "And where it does not: on recorded motion as it is, one frame in {every:d} kept, the rms angle at the frames "
-        f"left out is, over slerp's, {_listed(names, '.2f')}, for what is rough in recordings is not white; with "
+        "And where it does not: on clips as they are, one frame in {every:d} kept, the rms angle at the frames "
+        f"left out is, over slerp's, {_listed(names, '.2f')}, for what is rough in them is not white; with "
         f"{{sigma:.0f}} degree of white noise added it is {noisy}.",
         every=cell("denoise", "every", clip=ALL, every=every, noise_degrees=0.0, scheme="slerp"),
         sigma=cell(
