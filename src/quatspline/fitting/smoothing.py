@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -10,8 +11,8 @@ from quatspline.engines import engine
 from quatspline.fitting import reinsch
 from quatspline.quaternion import FloatArray
 
-ROWS = 30
-"""Rows of array algebra that an update's work on one keyframe counts as, see `engine.run`."""
+ROWS = {"measure": 2, "linearise": 6, "normal": 12, "turns": 3, "write": 5}
+"""Rows of array algebra that these count as on one keyframe, in plain Python, and others one (`engine.run`)."""
 
 ROUNDING, RATE = 1e-9, 1e-15
 """A relative rise of F that is none, and the rounding of a turn between keyframes, which lambda magnifies."""
@@ -63,7 +64,7 @@ class Smoothing:
         self.rows = len(q) if closed else len(q) - 2
         width = min(reinsch.CLOSED if closed else reinsch.OPEN, self.rows - 1)
         self.flat_r, self.flat_k = np.zeros((2, self.rows, width + 1))
-        engine.run(reinsch.flat, len(q), h, 1.0 / w, self.place, self.flat_r, self.flat_k)
+        _run("flat", len(q), h, 1.0 / w, self.place, self.flat_r, self.flat_k)
         self.factor = cholesky_banded(self.flat_r.T, lower=True, check_finite=False)
         self.least = float(np.sum((2.0 * RATE / h) ** 2) / h.min())  # energy of rounding alone
 
@@ -78,7 +79,7 @@ class Smoothing:
         """Trace of the influence matrix in one dimension [hutchinson1985]: parameters spent an axis."""
         share, factor = _scaled(weight)
         given = self.flat_r, self.flat_k, share, factor
-        return len(self.q) - self.rows + float(engine.run(reinsch.trace, self.rows, *given))
+        return len(self.q) - self.rows + float(_run("trace", self.rows, *given))
 
     def solve(self, weight: float, tolerance: float, limit: int, r: FloatArray) -> Solution:
         """Minimise F for lambda = weight, from r on, until an update turns no keyframe by more than the tolerance."""
@@ -104,7 +105,7 @@ class Smoothing:
         largest = float(np.sqrt(np.max(np.sum(delta * delta, axis=1))))
         while share >= SHORTEST and largest < np.inf:
             fresh = np.empty(state.r.shape)
-            change = float(engine.run(reinsch.turned, len(fresh), state.r, delta, share, fresh))
+            change = float(_run("turned", len(fresh), state.r, delta, share, fresh))
             trial = self._measured(fresh, weight)
             if trial.cost <= allowed or share * largest <= tolerance:
                 return trial, change, share * largest
@@ -114,12 +115,12 @@ class Smoothing:
     def write(self, state: State, segments: FloatArray) -> float:
         """Constants of the curve's segments; returns their reach."""
         given = state.r, state.steps, self.h, self.gamma(state.d), self.place, segments
-        return float(engine.run(reinsch.write, len(self.q), *given))
+        return float(_run("write", len(self.q), *given))
 
     def _measured(self, r: FloatArray, weight: float) -> State:
         steps, d, e = np.empty((self.h.size, 3)), np.empty((self.rows, 3)), np.empty((len(r), 3))
         given = self.q, r, self.h, self.sign, self.w, self.place, steps, d, e
-        rss = float(engine.run(reinsch.measure, len(r), *given))
+        rss = float(_run("measure", len(r), *given))
         return State(r, steps, d, e, rss, rss + weight * float(np.sum(d * self.gamma(d))))
 
     def _step(self, state: State, weight: float) -> FloatArray:
@@ -129,12 +130,12 @@ class Smoothing:
         n, iw = len(self.q), 1.0 / self.w
         share, factor = _scaled(weight)
         columns, delta = np.empty((n, 27)), np.full((n, 3), np.inf)
-        engine.run(reinsch.linearise, ROWS * n, state.steps, self.h, state.e, self.place, columns)
+        _run("linearise", n, state.steps, self.h, state.e, self.place, columns)
         # one more than the blocks' distance in rows of three, but no more than there are
         width = min(3 * self.flat_r.shape[1] + 2, 3 * self.rows)
         band, rhs = np.zeros((3 * self.rows, width)), np.empty((self.rows, 3))
         given = self.place, self.closed, self.flat_r, share, factor, band, rhs
-        engine.run(reinsch.normal, ROWS * n, columns, state.e, state.d, iw, *given)
+        _run("normal", n, columns, state.e, state.d, iw, *given)
         with np.errstate(all="ignore"):
             try:
                 z = solveh_banded(
@@ -148,8 +149,13 @@ class Smoothing:
             except LinAlgError:
                 return delta
         z = factor * z.reshape(self.rows, 3)
-        engine.run(reinsch.turns, n, columns, state.e, z, iw, self.place, self.closed, delta)
+        _run("turns", n, columns, state.e, z, iw, self.place, self.closed, delta)
         return delta
+
+
+def _run(name: str, keyframes: int, *arguments: Any) -> Any:
+    """A function of `reinsch`."""
+    return engine.run(getattr(reinsch, name), ROWS.get(name, 1) * keyframes, *arguments)
 
 
 def _scaled(weight: float) -> tuple[float, float]:
