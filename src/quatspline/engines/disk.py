@@ -63,6 +63,7 @@ def _save(path: Path, content: bytes) -> None:
 
 @cache
 def tell(base: Path, reason: str) -> None:
+    """Warn once in this process that a folder cannot be written, and why."""
     if parent_process() is None:  # which of many workers tells does not matter to the user
         told = f"compiled kernels are not kept for the next process: {base} cannot be written: {reason}"
         warnings.warn(told, RuntimeWarning, stacklevel=2)
