@@ -28,6 +28,16 @@ COLUMNS = {
         "least_key_speed",
     },
     "edge-cases": {"case", "result", "checked", "deviation", "failure"},
+    "excursion": {
+        "data",
+        "segments",
+        "off_median",
+        "over_worst",
+        "back_q95",
+        "overshot",
+        "wander_worst",
+        "failure",
+    },
     "fairness": {
         "data",
         "sets",
