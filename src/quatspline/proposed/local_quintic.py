@@ -9,8 +9,8 @@ import numpy as np
 from quatspline.families.rotation_vector import ROTATION_VECTOR
 from quatspline.fitting.joined_rates import join, steps_and_rates
 from quatspline.kernels.jit import REACH, fit_kernel
-from quatspline.kernels.operations import Operations, Per
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.options import AtMost, Count
 from quatspline.segments import SegmentCurve
 

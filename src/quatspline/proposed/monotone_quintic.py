@@ -10,9 +10,9 @@ from quatspline.families.rotation_vector import ROTATION_VECTOR
 from quatspline.fitting.joined_rates import join, steps_and_rates
 from quatspline.fitting.monotone_rates import monotone
 from quatspline.kernels.jit import REACH, fit_kernel
-from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import put_vec, vec_at
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.segments import SegmentCurve
 
 WINDOW = 3
