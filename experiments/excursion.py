@@ -108,19 +108,21 @@ def _summary(rows: pd.DataFrame) -> Row:
 # -- the figure -----------------------------------------------------------------------------------
 
 COLOURED = (
-    "slerp",
-    "squad",
-    "hermite",
-    "nielson",
-    "kim",
-    "quartic",
-    "local-quintic",
-    "monotone-quintic",
+    *(
+        "slerp",
+        "squad",
+        "nielson",
+        "kim",
+        "quartic",
+        "quintic",
+        "local-quintic",
+        "monotone-quintic",
+    ),
 )
 """Schemes that the figure names by colour: eight at most can be told apart."""
 GREY = "#b5b5b5"
 LEAST = 1e-3
-"""Degrees, or shares of a step, below which a bar ends at the axis."""
+"""Of a step: overshoots below it are drawn there."""
 
 
 def draw(table: pd.DataFrame) -> Figure:
@@ -130,13 +132,14 @@ def draw(table: pd.DataFrame) -> Figure:
         for data in (*list(HOLDS)[1:], AXIS, GENERIC)
     )
     names = list(hold["wander_median"].sort_values(kind="stable").index)
+    names += sorted(set(axis.index) - set(names))
     fig, panels = style.axes(style.PAGE, ROW * len(names) + 1.0, 1, 3, sharey=True)
-    _ranges(panels[0, 0], hold, names, ("wander_median", "wander_worst"))
-    _ranges(panels[0, 1], axis, names, ("over_median", "over_worst"))
+    _ranges(panels[0, 0], hold, names, ("wander_median", "wander_worst"), least=0.0)
+    _ranges(panels[0, 1], axis, names, ("over_q95", "over_worst"))
     _ranges(panels[0, 2], generic, names, ("over_q95", "over_worst"))
-    panels[0, 0].set(title="during a hold", xlabel="wander (degrees)")
-    panels[0, 1].set(title="about one axis", xlabel="overshoot / step")
-    panels[0, 2].set(title="generic sets", xlabel="overshoot / step")
+    panels[0, 0].set(title="during a hold", xlabel="wander (degrees)", xticks=range(0, 361, 90))
+    for ax, title in zip(panels[0, 1:], ("about one axis", "generic sets"), strict=True):
+        ax.set(title=title, xlabel="overshoot / step", xscale="log", xlim=(0.8 * LEAST, None))
     scheme_rows(panels[0, 0], names)
     for label in panels[0, 0].get_yticklabels():
         label.set_color("black" if label.get_text() in COLOURED else "#777777")
@@ -144,17 +147,18 @@ def draw(table: pd.DataFrame) -> Figure:
     return fig
 
 
-def _ranges(ax: Any, rows: pd.DataFrame, names: list[str], columns: tuple[str, str]) -> None:
-    """A bar from one column to the other, with markers at both; what is less than LEAST at the axis."""
+def _ranges(
+    ax: Any, rows: pd.DataFrame, names: list[str], columns: tuple[str, str], least: float = LEAST
+) -> None:
+    """A bar from one column to the other, a marker at the first; what is less than the least stands there."""
     rows = rows.reindex(names)
-    low, high = (rows[column].clip(lower=LEAST) for column in columns)
+    low, high = (rows[column].clip(lower=least) for column in columns)
     for y, name in enumerate(names):
         looks = style.scheme_style(name)
         colour = looks["color"] if name in COLOURED else GREY
         ax.hlines(y, low.iloc[y], high.iloc[y], color=colour, lw=1.6)
         ax.plot(low.iloc[y], y, color=colour, marker=looks["marker"], ms=4)
         ax.plot(high.iloc[y], y, color=colour, marker="|", ms=6)
-    ax.set(xscale="log", xlim=(0.8 * LEAST, None))
 
 
 def caption(table: pd.DataFrame) -> str:
@@ -162,6 +166,6 @@ def caption(table: pd.DataFrame) -> str:
     return (
         f"What curves do between keyframes that slerp does not, on {sets} seeded keyframe sets of each kind. (a) Angle "
         "from the keyframe during a hold beside moves a tenth as long: median (marker) to worst. (b) Overshoot of "
-        "steps about one axis, as a share of the step: median to worst. (c) The same of generic sets: 95 % quantile to "
-        f"worst. Below {LEAST:g} drawn at the left edge. Rows are sorted by (a); eight schemes are coloured."
+        "steps about one axis, as a share of the step: 95 % quantile to worst. (c) The same of generic sets. What is "
+        f"below {LEAST:g} is drawn there. Rows are sorted by (a), schemes without a curve in (a) last; eight are coloured."
     )
