@@ -167,5 +167,5 @@ def caption(table: pd.DataFrame) -> str:
         f"What curves do between keyframes that slerp does not, on {sets} seeded keyframe sets of each kind. (a) Angle "
         "from the keyframe during a hold beside moves a tenth as long: median (marker) to worst. (b) Overshoot of "
         "steps about one axis, as a share of the step: 95 % quantile to worst. (c) The same of generic sets. What is "
-        f"below {LEAST:g} is drawn there. Rows are sorted by (a), schemes without a curve in (a) last; eight are coloured."
+        f"below {LEAST:g} is drawn there. Rows are sorted by (a), those without a curve there last; eight are coloured."
     )

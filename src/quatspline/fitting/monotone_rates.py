@@ -1,15 +1,20 @@
 """Rates at a keyframe, limited so that the quintics that join them do not overshoot.
 
-A quintic from 0 to the step l h whose rates at the ends are v, a and w, b along it has the progress
+A quintic from 0 to l h with the rates v, a at its start and w, b at its end has a derivative whose Bezier
+coefficients are, by the spacing h,
 
-    0,  h v / 5,  2 h v / 5 + h^2 a / 20,  l h - 2 h w / 5 + h^2 b / 20,  l h - h w / 5,  l h     (1)
+    v,  d = v + h a / 4,  5 l - (v + d) - (w + e),  e = w - h b / 4,  w                          (1)
 
-as Bezier coefficients.  They increase, and so does the quintic, if 0 <= v <= 5/2 l and
+It increases if v, d, w, e >= 0 and the middle one is at least -4/3 sqrt(d e).  So it does if each end, for
+itself, keeps to one of
 
-    -4 v <= h a <= 10 l - 8 v                                                                    (2)
+    v + d <= (5/2 + c) l  and  d >= 3/2 c l,     or     v + d <= (5/2 - c) l                     (2)
 
-at its start, and the mirror image of (2) at its end.  At a keyframe the conditions of both sides have to
-hold for one a.  They can, where v <= 5/4 (h_0 l_1 + h_1 l_0) / (h_0 + h_1).
+with one c >= 0, the slack: two ends of the first kind have 4/3 sqrt(d e) >= 2 c l.  With c = 0 all
+coefficients are positive.  The second kind is taken up to v = 5/2 (1 - c) l and left gradually below
+it.  At a keyframe the conditions of both sides have to hold for one a; they can, where
+
+    v <= (5/4 + c/2) (h_0 l_1 + h_1 l_0) / (h_0 + h_1),     v <= (5/2 - c/2) min(l_0, l_1)        (3)
 
 Every rule is the same read backwards in time, depends continuously on the steps, and leaves the rates
 of dense keyframes of a motion alone.
@@ -23,19 +28,20 @@ from quatspline.kernels.values import norm, unit
 # notation: log units (half rotation vectors); h0, h1 the spacings before and after a keyframe, n, p the
 # unit vectors of the steps there, zero where a step is, l0, l1 the steps' lengths by time
 
-KAPPA = 1.25
-"""Of the velocity over the three-point one, see above; twice that over the slower side's."""
+HALF = 2.5
+"""Of l: what an end may have of (1)'s middle."""
 
-ACCELERATION = 10.0
-"""Of the acceleration over the side's velocity by its spacing: the most that (2) allows, at v = 0."""
+GRADUAL = 3.0
+"""How many times faster than v the least d rises with it."""
 
 
 @inlined
-def bounded(v, a, l0, l1, h0, h1):
-    """v and a no longer than what the sides allow; a side that holds still allows nothing."""
+def bounded(v, a, l0, l1, h0, h1, slack):
+    """v within (3), a no longer than (2) allows at v = 0; a side that holds still allows nothing."""
+    most = HALF + slack
     three_point = (h0 * l1 + h1 * l0) / (h0 + h1)
-    v = _shortened(v, min(KAPPA * three_point, 2.0 * KAPPA * min(l0, l1)))
-    return v, _shortened(a, ACCELERATION * min(l0 / h0, l1 / h1))
+    v = _shortened(v, min(0.5 * most * three_point, (HALF - 0.5 * slack) * min(l0, l1)))
+    return v, _shortened(a, 4.0 * most * min(l0 / h0, l1 / h1))
 
 
 @inlined
@@ -59,14 +65,23 @@ def _ahead(v, d):
 
 
 @inlined
-def clipped(a, v, n, p, l0, l1, h0, h1):
+def clipped(a, v, n, p, l0, l1, h0, h1, slack):
     """a within (2) along both steps: the mean of both orders."""
-    vn, vp = max(v @ n, 0.0), max(v @ p, 0.0)
-    n0, n1 = min(8.0 * vn - 10.0 * l0, 4.0 * vn) / h0, 4.0 * vn / h0
-    p0, p1 = -4.0 * vp / h1, max(10.0 * l1 - 8.0 * vp, -4.0 * vp) / h1
+    n0, n1 = _interval(max(v @ n, 0.0), l0, slack)
+    p0, p1 = _interval(max(v @ p, 0.0), l1, slack)
+    n0, n1, p0, p1 = -n1 / h0, -n0 / h0, p0 / h1, p1 / h1
     one = _clamped(_clamped(a, n, n0, n1), p, p0, p1)
     other = _clamped(_clamped(a, p, p0, p1), n, n0, n1)
     return 0.5 * (one + other)
+
+
+@inlined
+def _interval(v, l, slack):
+    """The least and the largest h a after a keyframe by (2); before it, negated."""
+    held = 1.5 * slack * l
+    least = min(max(held - GRADUAL * (HALF * (1.0 - slack) * l - v), 0.0), held)
+    low = 4.0 * (least - v)
+    return low, max(4.0 * ((HALF + slack) * l - 2.0 * v), low)
 
 
 @inlined
@@ -77,12 +92,12 @@ def _clamped(a, d, low, high):
 
 
 @inlined
-def monotone(v, a, s0, s1, h0, h1, strict):
+def monotone(v, a, s0, s1, h0, h1, strict, slack):
     """v and a of a keyframe between the slopes s0 and s1, limited; not ``strict``, in length only."""
     n, p, l0, l1 = unit(s0), unit(s1), norm(s0), norm(s1)
     if strict:
         v = forward(v, n, p)
-    v, a = bounded(v, a, l0, l1, h0, h1)
+    v, a = bounded(v, a, l0, l1, h0, h1, slack)
     if strict:
-        a = clipped(a, v, n, p, l0, l1, h0, h1)
+        a = clipped(a, v, n, p, l0, l1, h0, h1, slack)
     return v, a

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from quatspline.kernels.jit import REACH, fit_kernel
 from quatspline.kernels.values import put_vec, vec_at
 from quatspline.keyframes import Keyframes
 from quatspline.operations import Operations, Per
+from quatspline.options import AtLeast, AtMost
 from quatspline.segments import SegmentCurve
 
 WINDOW = 3
@@ -41,6 +42,9 @@ class MonotoneQuinticSpline(SegmentCurve):
     overshoot
         "none" takes (1) to (4); "limited" takes (2) and (3): fairer, holds are as still, and a step may be
         overshot by about half of itself.
+    slack
+        Lets the derivative of a step's progress have a negative Bezier coefficient, where its neighbours
+        make up for it: limits are wider by it, the promise is the same.  0.5 costs least torque.
     """
 
     title = "Monotone quintic C2 spline"
@@ -52,13 +56,19 @@ class MonotoneQuinticSpline(SegmentCurve):
     family = ROTATION_VECTOR
     operations = Operations(exps=Per(sample=1), logs=Per(keyframe=WINDOW))
 
-    def _fit(self, keyframes: Keyframes, *, overshoot: Literal["none", "limited"] = "none") -> None:
-        self._solve(FIT, np.array([float(WINDOW), float(overshoot == "none")]))
+    def _fit(
+        self,
+        keyframes: Keyframes,
+        *,
+        overshoot: Literal["none", "limited"] = "none",
+        slack: Annotated[float, AtLeast(0.0), AtMost(0.5)] = 0.0,
+    ) -> None:
+        self._solve(FIT, np.array([float(WINDOW), float(overshoot == "none"), float(slack)]))
 
 
 @fit_kernel
 def FIT(q, h, closed, sign, parameters, segments, report):
-    """Constants of every segment; parameters are the window m, and 1 for all limits."""
+    """Constants of every segment; parameters are the window m, 1 for all limits, the slack."""
     strict = parameters[1] > 0.0
     steps, rates = steps_and_rates(q, h, closed, sign, int(parameters[0]))
     for i in range(q.shape[0]):
@@ -68,7 +78,7 @@ def FIT(q, h, closed, sign, parameters, segments, report):
         h0, h1 = h[before], h[after]
         s0, s1 = (1.0 / h0) * vec_at(steps[before], 0), (1.0 / h1) * vec_at(steps[after], 0)
         v, a = vec_at(rates[i], 0), vec_at(rates[i], 3)
-        v, a = monotone(v, a, s0, s1, h0, h1, strict)
+        v, a = monotone(v, a, s0, s1, h0, h1, strict, parameters[2])
         put_vec(rates[i], 0, v)
         put_vec(rates[i], 3, a)
     report[REACH] = join(q, h, steps, rates, segments)
