@@ -2,7 +2,8 @@
 
 Looked through, in order: the package's own ``proposed``, ``baselines`` (beside ``src`` in a checkout,
 inside the package when installed), the folders named by ``QUATSPLINE_BASELINES`` (a path list), and the
-entry points of the group ``quatspline.schemes``.
+entry points of the group ``quatspline.schemes``.  What does not come with the package is a plug-in, and admitted
+first (see `admission`).
 """
 
 from __future__ import annotations
@@ -12,12 +13,14 @@ import importlib
 import importlib.metadata
 import os
 from collections.abc import Iterator
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+from quatspline import admission
 from quatspline.curve import Curve
 from quatspline.options import nearest
 from quatspline.system.forking import undivided
@@ -31,6 +34,8 @@ if TYPE_CHECKING:
 PACKAGE = Path(__file__).parent
 ENTRY_POINTS = "quatspline.schemes"
 FOLDERS = "QUATSPLINE_BASELINES"
+SHIPPED = "_shipped.txt"
+"""The stems of the baselines that come with the package."""
 
 
 @dataclass(frozen=True)
@@ -43,6 +48,8 @@ class Found:
     problem: str | None = None
     settled: bool = True
     """False where the problem is an import under way, after which it may be gone."""
+    shipped: bool = False
+    """Whether it comes with the package."""
 
 
 def shipped(folder: str) -> Path:
@@ -96,12 +103,15 @@ def _find(places: tuple[Path, ...]) -> dict[str, Found]:
     once = {path.resolve(): path for path in reversed(files)}  # the first folder that has it
     everything: dict[str, Found] = {}
     for item in _discover(tuple(reversed(once.values()))):
-        if item.name in everything:
-            raise ValueError(
-                f"two schemes are called {item.name!r}: {everything[item.name].origin} and {item.origin}"
-            )
-        everything[item.name] = item
+        other = everything.get(item.name)
+        everything[item.name] = item if other is None else _twice(other, item)
     return dict(sorted(everything.items()))
+
+
+def _twice(one: Found, other: Found) -> Found:
+    """Neither of two schemes: whose a name is would depend on the order of folders."""
+    origins = f"{one.origin} and {other.origin}"
+    return Found(one.name, origins, None, f"two schemes are called {one.name!r}: {origins}")
 
 
 def schemes() -> list[str]:
@@ -183,13 +193,57 @@ def _rebuilt(name: str, keyframes: Keyframes, given: dict[str, Any]) -> Curve:
 
 
 def _discover(files: tuple[Path, ...]) -> Iterator[Found]:
-    yield from map(_from_file, files)
-    for entry in sorted(importlib.metadata.entry_points(group=ENTRY_POINTS), key=lambda e: e.name):
-        yield _from_entry(entry)
+    found = importlib.metadata.entry_points(group=ENTRY_POINTS)
+    entries = sorted(found, key=lambda entry: entry.name)
+    ours = [path for path in files if _is_shipped(path)]
+    plugins: list[admission.Plugin] = [*(path for path in files if path not in ours), *entries]
+    refused = admission.refusals(plugins)
+    for path in ours:
+        yield replace(_from_file(path), shipped=True)
+    for plugin in plugins:
+        if plugin in refused:
+            settled = refused[plugin] != admission.PENDING
+            yield Found(*_named(plugin), None, refused[plugin], settled)
+        else:
+            yield _from_file(plugin) if isinstance(plugin, Path) else _from_entry(plugin)
+
+
+def plug_ins() -> set[str]:
+    """Names of the usable schemes that do not come with the package."""
+    return {name for name, item in found().items() if item.scheme is not None and not item.shipped}
+
+
+def _is_shipped(path: Path) -> bool:
+    return path.parent == PACKAGE / "proposed" or (
+        path.parent == shipped("baselines") and path.stem in _baselines()
+    )
+
+
+@cache
+def _baselines() -> frozenset[str]:
+    """Stems of the package's own files among those that a checkout's owner has put beside them."""
+    with suppress(OSError):  # then all are plug-ins
+        return frozenset((shipped("baselines") / SHIPPED).read_text(encoding="ascii").split())
+    return frozenset()
+
+
+def _named(plugin: admission.Plugin) -> tuple[str, str]:
+    """The name of a scheme, and where it comes from."""
+    if isinstance(plugin, Path):
+        return plugin.stem.replace("_", "-"), str(plugin)
+    return plugin.name, plugin.value
+
+
+def loaded(kind: str, place: str) -> type[Curve]:
+    """The class in a "file", or of the "entry" point of that name, imported as it comes."""
+    if kind == "file":
+        return _only_scheme(_module(Path(place)))
+    (entry,) = importlib.metadata.entry_points(group=ENTRY_POINTS, name=place)
+    return _loaded(entry)
 
 
 def _from_file(path: Path) -> Found:
-    name, origin = path.stem.replace("_", "-"), str(path)
+    name, origin = _named(path)
     try:
         module = _module(path)
         if unfinished(module.__name__):
@@ -222,12 +276,17 @@ def _only_scheme(module: ModuleType) -> type[Curve]:
 
 def _from_entry(entry: importlib.metadata.EntryPoint) -> Found:
     try:
-        scheme = entry.load()
-        if not (isinstance(scheme, type) and issubclass(scheme, Curve)):
-            raise TypeError(f"no subclass of Curve: {scheme!r}")
+        scheme = _loaded(entry)
     except (Exception, SystemExit) as error:
-        return _broken(entry.name, entry.value, error)
-    return _usable(entry.name, entry.value, scheme)
+        return _broken(*_named(entry), error)
+    return _usable(*_named(entry), scheme)
+
+
+def _loaded(entry: importlib.metadata.EntryPoint) -> type[Curve]:
+    scheme = entry.load()
+    if not (isinstance(scheme, type) and issubclass(scheme, Curve)):
+        raise TypeError(f"no subclass of Curve: {scheme!r}")
+    return scheme
 
 
 def _broken(name: str, origin: str, error: BaseException) -> Found:

@@ -138,10 +138,13 @@ def test_underscored_classes_are_helpers(folder: Path) -> None:
     assert qs.scheme("real").title == "Real"
 
 
-def test_duplicates_are_refused(folder: Path) -> None:
+def test_a_duplicate_takes_out_the_two(folder: Path) -> None:
+    others = set(qs.schemes()) - {"slerp"}
     (folder / "slerp.py").write_text(HALF.format(name="Slerp"))
-    with pytest.raises(ValueError, match=r"two schemes are called 'slerp': .*slerp\.py"):
-        qs.schemes()
+    assert set(qs.schemes()) == others
+    told = r"cannot be used: two schemes are called 'slerp': .*slerp\.py and .*slerp\.py"
+    with pytest.raises(ValueError, match=told):
+        qs.scheme("slerp")
 
 
 def test_several_folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

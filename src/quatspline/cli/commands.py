@@ -21,7 +21,7 @@ from quatspline.cli.arguments import REFUSED, parser
 from quatspline.cli.notes import note
 from quatspline.system.atomic import naming
 from quatspline.system.ending import Ended, ending
-from quatspline.system.stdout import STDOUT, say
+from quatspline.system.stdout import STDOUT, reserved, say
 
 if TYPE_CHECKING:
     from quatspline.catalogue import Found
@@ -56,7 +56,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         arguments = parser().parse_args(given)
         arguments.command = ["quatspline", *given]
         with ending(partial(_interrupted, arguments.name)):
-            status = COMMANDS[arguments.name](arguments)
+            with reserved():
+                status = COMMANDS[arguments.name](arguments)
             with naming(STDOUT):
                 sys.stdout.flush()
         return status
@@ -122,7 +123,9 @@ def _list(arguments: argparse.Namespace) -> int:
 
 def _claims(item: Found) -> list[str]:
     def cell(show: Callable[[Any], Any]) -> str:
-        with suppress(AttributeError):  # a claim that the file does not make
+        with suppress(
+            Exception
+        ):  # a claim that the file does not make, or one that cannot be shown
             return str(show(item.scheme))
         return "?"
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,7 +14,7 @@ from quatspline.motion import closing, files
 from quatspline.motion.files import Reading
 from quatspline.motion.resampling import grid, sampled, stamps_since
 from quatspline.system.atomic import naming, same_file
-from quatspline.system.stdout import STDOUT, say
+from quatspline.system.stdout import STDOUT, output, say
 
 if TYPE_CHECKING:
     from quatspline.motion import Motion
@@ -90,7 +89,7 @@ def sample(arguments: argparse.Namespace) -> None:
         _write(arguments.file, samples)
         return
     with naming(STDOUT):
-        files.write_csv(sys.stdout, samples)
+        files.write_csv(output(), samples)
 
 
 def _at(curve: MotionCurve, path: str) -> Motion:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from quatspline import catalogue
 from quatspline.engines.engine import always_compiled
-from quatspline.runs import sweeps
+from quatspline.runs import staff, sweeps
 from quatspline.runs.experiment import (
     Experiment,
     Run,
@@ -59,7 +59,7 @@ def run(
     chosen = experiments(names)
     picked = [catalogue.scheme(name).name for name in schemes] if schemes is not None else None
     runs = {e.name: Run.of(size or e.size, picked, seed) for e in chosen}
-    with always_compiled(), sweeps.workers(jobs, dask):
+    with always_compiled(), staff.workers(jobs, dask):
         results = Results(out, force=force)
         with results.writing():
             for experiment, as_before in _outdated(chosen, results):

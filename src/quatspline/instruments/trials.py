@@ -55,7 +55,7 @@ def attempted(measure: Callable[[], list[Row]], **given: Any) -> list[Row]:
     """
     try:
         rows = measure()
-    except Exception as error:  # whatever a scheme raises is a result
+    except (Exception, SystemExit) as error:  # whatever a scheme raises is a result
         rows = [{"failure": reason(error)}]
     return [given | row for row in rows]
 

@@ -6,48 +6,39 @@ An experiment that varies something defines, instead of ``measure(run)``,
 ``measure_cell(run, **cell) -> dict | list`` the row or rows of a cell; what fails is a row too
 ``gather(run, table) -> DataFrame``          optional: columns that need all cells
 ``SERIAL: bool``                             optional: its cells time something, so they run one
-                                             after the other in this process
+                                             after the other, in one process
 
 A finished cell is appended to a journal at once, and an interrupted run goes on with the others.  Rows
 pass through JSON, which keeps every bit of a float, and stand in the order of the cells: the table
 does not depend on the number of workers or on interruptions.
+
+Cells are measured in processes of their own, with a limit of time and memory, whatever their number.  A cell that
+ends its process is a row that says how, of the scheme that the cell names.
 """
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import os
 import sys
 import threading
 from collections.abc import Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from dataclasses import replace
 from functools import cache
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
-from quatspline import catalogue
+from quatspline import admission, catalogue
 from quatspline.engines.engine import always_compiled
+from quatspline.instruments.trials import reason
 from quatspline.runs import experiment
 from quatspline.runs.experiment import Run
 from quatspline.runs.journal import Cell, Kept, key
-from quatspline.system.ending import bind_to, hang_up_ignored
+from quatspline.runs.staff import Done, Staff, staff
 from quatspline.trajectories import clips
 
 if TYPE_CHECKING:
     import pandas as pd
-
-PATIENCE = 10.0
-"""Seconds to wait for a Dask scheduler, and for its first worker."""
-
-
-class Done(NamedTuple):
-    """A measured cell as it comes from a worker: its rows as JSON, or the trace of what went wrong."""
-
-    place: int
-    rows: str
-    problem: str | None = None
-
 
 # -- the sweep ----------------------------------------------------------------------------------
 
@@ -68,13 +59,15 @@ def sweep(name: str, module: ModuleType, run: Run, kept: Kept) -> pd.DataFrame:
     if len(left) < len(cells):
         message = f"{name}: {len(cells) - len(left)} of {len(cells)} cells kept"
         print(message, file=sys.stderr, flush=True)
-    measure = _one_by_one if getattr(module, "SERIAL", False) else _side_by_side
     problems = []
-    for done in run.progress(measure(name, run, left), len(left), name):
-        if done.problem is None:
-            kept.add(left[done.place], done.rows)
-        else:
-            problems.append(done)
+    with staff() as employed:
+        serial = bool(getattr(module, "SERIAL", False))
+        measured = _Sweep(name, run, serial, employed).measured(left)
+        for done in run.progress(measured, len(left), name):
+            if done.problem is None:
+                kept.add(left[done.place], done.rows)
+            else:
+                problems.append(done)
     if problems:
         first = min(problems)
         raise RuntimeError(f"cell {key(left[first.place])}: {first.problem}")
@@ -82,106 +75,67 @@ def sweep(name: str, module: ModuleType, run: Run, kept: Kept) -> pd.DataFrame:
     return module.gather(run, table) if hasattr(module, "gather") else table
 
 
-def _one_by_one(name: str, run: Run, cells: Sequence[Cell]) -> Iterator[Done]:
-    for place, cell in enumerate(cells):
-        yield _measured(place, name, run, cell)
+class _Sweep:
+    """The cells of one experiment on what measures them."""
 
+    def __init__(self, name: str, run: Run, serial: bool, employed: Staff) -> None:
+        self.name, self.run, self.serial, self.employed = name, run, serial, employed
+        folders = _environment()
+        verdicts = admission.verdicts()
+        self.shared = folders, _sources(*folders.items()), catalogue.schemes(), verdicts
 
-def _side_by_side(name: str, run: Run, cells: Sequence[Cell]) -> Iterator[Done]:
-    """Cells on the workers, as they finish; those begun when a worker dies are tried alone.
-
-    A death says not whose it was and takes the cells beside it along: only a cell whose worker dies
-    with nothing beside it is to blame.
-    """
-    from joblib.externals.loky.process_executor import TerminatedWorkerError
-
-    environment = _environment()
-    shared = (
-        os.getpid(),
-        name,
-        run,
-        environment,
-        _sources(*environment.items()),
-        catalogue.schemes(),
-    )
-    left = dict(enumerate(cells))
-    while left:
-        begun: set[int] = set()
-        try:
-            for done in _dispatched(shared, dict(left), begun):
-                del left[done.place]
+    def measured(self, cells: Sequence[Cell]) -> Iterator[Done]:
+        """Cells as they finish; last those that ended their process and name no scheme."""
+        unnamed = []
+        for done in self._done([(self.run, cell) for cell in cells]):
+            scheme = _named(cells[done.place]) if done.death else None
+            if done.death is None:
                 yield done
-        except TerminatedWorkerError:
-            for place in [place for place in left if place in begun]:
-                yield _alone(shared, place, left.pop(place))
+            elif scheme is None:
+                unnamed.append(done)
+            else:
+                yield Done(done.place, self._labelled(cells[done.place], scheme, done.death))
+        for done in unnamed:
+            yield self._without_culprits(done, cells[done.place])
+
+    def _done(self, asked: Sequence[tuple[Run, Cell]]) -> Iterator[Done]:
+        tasks = [
+            (place, self.name, run, *self.shared, cell) for place, (run, cell) in enumerate(asked)
+        ]
+        return self.employed.done(_measured_elsewhere, tasks, self.serial)
+
+    def _without_culprits(self, done: Done, cell: Cell) -> Done:
+        """A cell of many schemes that ended its process: measured without those that do so alone.
+
+        Suspects are schemes that are not shipped; where none is to blame the cell itself is.
+        """
+        names = self.run.schemes or catalogue.schemes()
+        suspects = [name for name in names if name in catalogue.plug_ins()]
+        alone = list(self._done([(replace(self.run, schemes=[name]), cell) for name in suspects]))
+        deaths = {suspects[one.place]: one.death for one in alone if one.death}
+        rest = [name for name in names if name not in deaths]
+        if not deaths:
+            return Done(done.place, "", done.death)
+        rows: list[Any] = []
+        for scheme, death in deaths.items():
+            rows += json.loads(self._labelled(cell, scheme, death))
+        if rest:
+            (again,) = self._done([(replace(self.run, schemes=rest), cell)])
+            if again.death or again.problem:
+                return Done(done.place, "", again.death or again.problem)
+            rows = json.loads(again.rows) + rows
+        return Done(done.place, json.dumps(rows))
+
+    def _labelled(self, cell: Cell, scheme: str, death: str) -> str:
+        """The row of a cell that a scheme did not survive, which is told, too."""
+        print(f"{self.name}: {scheme}: {death}", file=sys.stderr, flush=True)
+        return json.dumps([{**cell, "scheme": scheme, "failure": death}])
 
 
-def _alone(shared: tuple[Any, ...], place: int, cell: Cell) -> Done:
-    """A cell with nothing beside it, on a worker: this process must outlive it."""
-    from joblib.externals.loky.process_executor import TerminatedWorkerError
-
-    try:
-        (done,) = _dispatched(shared, {place: cell}, set())
-        return done
-    except TerminatedWorkerError as error:
-        return Done(place, "", f"a worker died, this cell alone on it: {experiment.traced(error)}")
-
-
-def _dispatched(shared: tuple[Any, ...], cells: dict[int, Cell], begun: set[int]) -> Iterator[Done]:
-    """Cells on the workers, as they finish; enters in ``begun`` those that are handed out."""
-    from joblib import Parallel, delayed
-
-    def tasks() -> Iterator[Any]:  # drawn from a few at a time, as workers become free
-        for place, cell in cells.items():
-            begun.add(place)
-            yield delayed(_measured_elsewhere)(place, *shared, cell)
-
-    # A cell a task: a task that dies takes no finished cell with it.
-    parallel = Parallel(return_as="generator_unordered", batch_size=1, max_nbytes=None)
-    yield from parallel(tasks())
-
-
-@contextmanager
-def workers(jobs: int | None = None, dask: str | None = None) -> Iterator[None]:
-    """Within it, cells go to processes of this machine (None: one a core) or to a Dask scheduler.
-
-    Raises
-    ------
-    ValueError
-        Without the extra "dask", a scheduler at the address, or a worker of it.
-    """
-    from joblib import parallel_config
-    from joblib.externals.loky.backend import resource_tracker
-
-    if dask is None:
-        with hang_up_ignored():  # it cleans up after all others, SIGINT and SIGTERM notwithstanding
-            resource_tracker.ensure_running()
-        # One thread a process: the cores are shared out already, and sums do not regroup.
-        with parallel_config("loky", n_jobs=jobs or -1, inner_max_num_threads=1):
-            yield
-        return
-    with _client(dask) as client, parallel_config("dask", client=client):
-        yield
-
-
-def _client(address: str) -> AbstractContextManager[Any]:
-    if importlib.util.find_spec("distributed") is None:
-        raise ValueError("--dask needs the extra: pip install 'quatspline[dask]'")
-    import distributed
-    from distributed.comm import resolve_address
-
-    try:
-        resolve_address(address)  # a client that fails at this cannot be closed
-        client = distributed.Client(address, timeout=PATIENCE, set_as_default=False)
-    except (OSError, ValueError) as error:
-        reason = " ".join(str(error).split())
-        raise ValueError(f"--dask {address}: no Dask scheduler answers: {reason}") from None
-    try:
-        client.wait_for_workers(1, timeout=PATIENCE)
-    except TimeoutError:
-        client.close()
-        raise ValueError(f"--dask {address}: the scheduler has no workers") from None
-    return client
+def _named(cell: Cell) -> str | None:
+    """The scheme that a cell measures."""
+    values = [cell.get("scheme"), *cell.values()]
+    return next((v for v in values if isinstance(v, str) and v in catalogue.found()), None)
 
 
 # -- in a worker --------------------------------------------------------------------------------
@@ -193,20 +147,20 @@ library that bears no threads, must not share it."""
 
 def _measured_elsewhere(
     place: int,
-    starter: int,
     name: str,
     run: Run,
     environment: dict[str, str],
     sources: str,
     usable: Sequence[str],
+    verdicts: dict[str, str | None],
     cell: Cell,
 ) -> Done:
     """A cell in another process, which finds the same files as the one that asks."""
-    bind_to(starter)
     with _measuring:
         os.environ.update(environment)
         if _sources(*environment.items()) != sources:
-            raise RuntimeError("a worker has other sources of quatspline than this process")
+            return Done(place, "", "a worker has other sources of quatspline than this process")
+        admission.take(verdicts)
         lacking = _lacking(usable, run, cell)
         return Done(place, "", lacking) if lacking else _measured(place, name, run, cell)
 
@@ -237,8 +191,14 @@ def _measured(place: int, name: str, run: Run, cell: Cell) -> Done:
             rows = module.measure_cell(run, **cell)
         listed = [rows] if isinstance(rows, dict) else list(rows)
         return Done(place, json.dumps(listed, default=_plain))
+    except MemoryError as error:
+        return Done(place, "", death=reason(error))
     except Exception as error:  # told once the other cells are kept
         return Done(place, "", experiment.traced(error))
+    except (
+        BaseException
+    ) as error:  # sys.exit, or an interrupt that nobody sent: signals end processes
+        return Done(place, "", death=reason(error))
 
 
 def _plain(value: Any) -> Any:

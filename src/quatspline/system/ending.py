@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache
 from types import FrameType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from multiprocessing.process import BaseProcess
 
 SIGNALS = [getattr(signal, n) for n in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, n)]
 
@@ -19,6 +24,9 @@ PATIENCE = 1.0
 
 PULSE = 0.25
 """Seconds between two looks of a worker at whether the process that started it is there."""
+
+beside: set[subprocess.Popen[bytes]] = set()
+"""Processes of this one that `multiprocessing` does not know and that end with it."""
 
 
 class Ended(KeyboardInterrupt):
@@ -77,7 +85,26 @@ def end_workers() -> None:
     from multiprocessing import active_children
 
     for worker in active_children():
-        worker.kill()
+        kill(worker)
+    for process in tuple(beside):
+        process.kill()
+
+
+def kill(worker: BaseProcess) -> None:
+    """Kill a worker; joblib's have no method for it."""
+    if worker.pid is not None and worker.exitcode is None:
+        with suppress(ProcessLookupError):
+            os.kill(worker.pid, getattr(signal, "SIGKILL", signal.SIGTERM))
+
+
+def ended_by(code: int) -> str:
+    """How a process ended, by the code that its parent sees."""
+    if code >= 0:
+        return f"status {code}"
+    try:
+        return signal.Signals(-code).name
+    except ValueError:  # real-time signals have no names
+        return f"signal {-code}"
 
 
 @contextmanager
