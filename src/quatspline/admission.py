@@ -42,6 +42,8 @@ KEYFRAMES = 6
 """Of the curve that is tried, where a scheme does not ask for more."""
 GRACE = 5.0
 """Seconds after its limit in which a process that nobody ended ends itself."""
+TRIED = "tried"
+"""The folder of verdicts in that of the cache."""
 PENDING = "it is being tried before it is imported"
 """Why a plug-in cannot be used by another that is tried itself."""
 
@@ -92,7 +94,7 @@ def _digest(plugin: Plugin) -> str:
 
 
 def _place(digest: str) -> Path:
-    return cache_base() / "tried" / digest
+    return cache_base() / TRIED / digest
 
 
 def _remembered(digest: str) -> object:

@@ -12,7 +12,7 @@ import copyreg
 import importlib
 import importlib.metadata
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache
@@ -69,6 +69,8 @@ def _folders(extra: str) -> tuple[Path, ...]:
     return (PACKAGE / "proposed", shipped("baselines"), *given)
 
 
+_left_out: dict[str, str] = {}
+"""Why schemes are not to be used in this process for now, by name."""
 _complete: dict[Any, dict[str, Found]] = {}
 """What was found, by the folders and when they last changed."""
 
@@ -79,6 +81,17 @@ def found() -> dict[str, Found]:
     Threads that ask first at the same time all look, and wait for each other's imports; what one
     finds while a scheme is still being imported is not kept.
     """
+    out = {name: replace(_all()[name], scheme=None, problem=why) for name, why in _left_out.items()}
+    return {**_all(), **out} if out else _all()
+
+
+def leave_out(reasons: Mapping[str, str]) -> None:
+    """Have this process count schemes as unusable, each for a reason, until it is told otherwise."""
+    global _left_out
+    _left_out = dict(reasons)
+
+
+def _all() -> dict[str, Found]:
     places = _folders(os.environ.get(FOLDERS, ""))
     key = places, tuple(map(_changed, places))
     if key not in _complete:

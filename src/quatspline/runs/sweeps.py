@@ -22,7 +22,7 @@ import json
 import os
 import sys
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from types import ModuleType
@@ -98,10 +98,11 @@ class _Sweep:
         for done in unnamed:
             yield self._without_culprits(done, cells[done.place])
 
-    def _done(self, asked: Sequence[tuple[Run, Cell]]) -> Iterator[Done]:
-        tasks = [
-            (place, self.name, run, *self.shared, cell) for place, (run, cell) in enumerate(asked)
-        ]
+    def _done(
+        self, asked: Sequence[tuple[Run, Cell]], left_out: Mapping[str, str] = {}
+    ) -> Iterator[Done]:
+        shared = (*self.shared, dict(left_out))
+        tasks = [(i, self.name, run, *shared, cell) for i, (run, cell) in enumerate(asked)]
         return self.employed.done(_measured_elsewhere, tasks, self.serial)
 
     def _without_culprits(self, done: Done, cell: Cell) -> Done:
@@ -109,21 +110,22 @@ class _Sweep:
 
         Suspects are schemes that are not shipped; where none is to blame the cell itself is.
         """
-        names = self.run.schemes or catalogue.schemes()
-        suspects = [name for name in names if name in catalogue.plug_ins()]
+        asked = self.run.schemes
+        suspects = [name for name in asked or catalogue.schemes() if name in catalogue.plug_ins()]
         alone = list(self._done([(replace(self.run, schemes=[name]), cell) for name in suspects]))
         deaths = {suspects[one.place]: one.death for one in alone if one.death}
-        rest = [name for name in names if name not in deaths]
         if not deaths:
             return Done(done.place, "", done.death)
+        rest = [name for name in asked if name not in deaths] if asked else None
         rows: list[Any] = []
-        for scheme, death in deaths.items():
-            rows += json.loads(self._labelled(cell, scheme, death))
-        if rest:
-            (again,) = self._done([(replace(self.run, schemes=rest), cell)])
+        if rest != []:
+            (again,) = self._done([(replace(self.run, schemes=rest), cell)], deaths)
             if again.death or again.problem:
                 return Done(done.place, "", again.death or again.problem)
-            rows = json.loads(again.rows) + rows
+            rows = json.loads(again.rows)
+        there = {row.get("scheme") for row in rows}
+        for scheme in sorted(deaths.keys() - there):
+            rows += json.loads(self._labelled(cell, scheme, deaths[scheme]))
         return Done(done.place, json.dumps(rows))
 
     def _labelled(self, cell: Cell, scheme: str, death: str) -> str:
@@ -153,6 +155,7 @@ def _measured_elsewhere(
     sources: str,
     usable: Sequence[str],
     verdicts: dict[str, str | None],
+    left_out: dict[str, str],
     cell: Cell,
 ) -> Done:
     """A cell in another process, which finds the same files as the one that asks."""
@@ -161,7 +164,8 @@ def _measured_elsewhere(
         if _sources(*environment.items()) != sources:
             return Done(place, "", "a worker has other sources of quatspline than this process")
         admission.take(verdicts)
-        lacking = _lacking(usable, run, cell)
+        catalogue.leave_out(left_out)
+        lacking = _lacking([name for name in usable if name not in left_out], run, cell)
         return Done(place, "", lacking) if lacking else _measured(place, name, run, cell)
 
 

@@ -6,6 +6,7 @@ pipe of its own; one that ends or takes too long is known with the task that it 
 
 from __future__ import annotations
 
+import math
 import os
 import signal
 import sys
@@ -47,7 +48,8 @@ class _Worker:
     process: LokyProcess
     pipe: connection.Connection
     place: int = -1
-    until: float = 0.0
+    until: float = math.inf
+    ready: bool = False
 
     def death(self) -> tuple[str, bool]:
         """How the process ended, in words, and whether that says nothing of the task."""
@@ -120,25 +122,33 @@ class Crew:
         return _Worker(process, ours)
 
     def _hand(self, worker: _Worker, place: int, task: Task) -> None:
-        worker.place, worker.until = place, time.monotonic() + self.seconds
+        worker.place = place
+        worker.until = time.monotonic() + self.seconds if worker.ready else math.inf
         with suppress(OSError):  # it died idle: its pipe is at its end, which `_next` sees
             worker.pipe.send(task)
 
     def _next(self) -> Iterator[Outcome]:
-        """The outcomes that are there, at least one."""
+        """The outcomes that are there."""
         busy = {worker.pipe: worker for worker in self._workers if worker.place >= 0}
-        patience = max(0.0, min(w.until for w in busy.values()) - time.monotonic())
+        first = min(worker.until for worker in busy.values())
+        patience = None if first == math.inf else max(0.0, first - time.monotonic())
         for pipe in connection.wait(list(busy), patience):
-            yield self._received(busy[pipe])  # type: ignore[index]
+            outcome = self._received(busy[pipe])  # type: ignore[index]
+            if outcome is not None:
+                yield outcome
         for worker in busy.values():
             if worker.place >= 0 and time.monotonic() > worker.until:
                 yield self._lost(worker, f"{LATE} {self.seconds:g} s", strange=False)
 
-    def _received(self, worker: _Worker) -> Outcome:
+    def _received(self, worker: _Worker) -> Outcome | None:
+        """The outcome of a task; None where the process has only started, and its time begins."""
         try:
             result = worker.pipe.recv()
         except (EOFError, OSError):
             return self._lost(worker, *worker.death())
+        if not worker.ready:
+            worker.ready, worker.until = True, time.monotonic() + self.seconds
+            return None
         place, worker.place = worker.place, -1
         return Outcome(place, result)
 
@@ -165,6 +175,7 @@ def _serve(pipe: connection.Connection, parent: int, memory: int) -> None:
     with suppress(OSError):  # standard error is closed
         os.dup2(2, 1)  # standard output is the command's own, whatever libraries print
     sys.stdout = sys.stderr
+    pipe.send(None)  # begun: importing all this took no task's time
     while True:
         try:
             function, arguments = pipe.recv()
