@@ -9,10 +9,12 @@ COMPILED ?=
 # Text that reaches a command as it was given, through the environment: neither make nor a shell reads it.
 override NAME := $(value NAME)
 override TASK := $(value TASK)
-export NAME TASK
+override SHARE := $(value SHARE)
+override MINUTES := $(value MINUTES)
+export NAME TASK SHARE MINUTES
 
 .DEFAULT_GOAL := help
-.PHONY: help reproduce benchmark benchmark-speed report test docs lint format new-baseline check-baseline reference lock clean
+.PHONY: help reproduce benchmark benchmark-speed report test torture docs lint format new-baseline check-baseline reference lock clean
 
 help: ## Show the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /|/' | awk -F'|' '{printf "  make %-16s %s\n", $$1, $$2}'
@@ -48,6 +50,9 @@ report: $(VENV)/run ## Write results/report.html again from the tables that are 
 
 test: $(VENV)/test lint docs ## Lint, types, docs and all tests
 	@$(BIN)/python -m pytest -n 2 --dist worksteal -q
+
+torture: $(VENV)/test ## Kill, corrupt and fill what runs write; bad plug-ins, hostile files: SHARE=0.1 of the counts, MINUTES=60 at most
+	@$(BIN)/python tests/robustness/torture.py $${SHARE:+--share "$$SHARE"} $${MINUTES:+--minutes "$$MINUTES"}
 
 docs: $(VENV)/test ## Build docs into site/; broken links, citations and formulas fail
 	@$(BIN)/mkdocs build --quiet --strict
