@@ -70,7 +70,7 @@ reference: $(VENV)/run ## Take the tables of the last run as the reference and q
 
 lock: ## Renew requirements.lock from the newest releases
 	@rm -rf $(VENV)-lock && $(PYTHON) -m venv $(VENV)-lock
-	@$(VENV)-lock/bin/pip --quiet --disable-pip-version-check install --editable '.[peers,test,dev,dask,docs]'
+	@$(VENV)-lock/bin/pip --quiet --disable-pip-version-check install --editable '.[peers,peers-heavy,peers-drake,test,dev,dask,docs]'
 	@(echo "# Versions that this release was tested with: constraints for pip, renewed by make lock."; \
 	  $(VENV)-lock/bin/pip --disable-pip-version-check freeze --exclude-editable) > requirements.lock.new
 	@mv requirements.lock.new requirements.lock && rm -rf $(VENV)-lock
