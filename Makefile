@@ -10,24 +10,35 @@ COMPILED ?=
 TASK ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help reproduce benchmark benchmark-speed report test docs lint format new-baseline check-baseline reference lock clean
+.PHONY: help peers-heavy peers-drake peers-node reproduce benchmark benchmark-speed report test docs lint format new-baseline check-baseline reference lock clean
 
 help: ## Show the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /|/' | awk -F'|' '{printf "  make %-16s %s\n", $$1, $$2}'
 
-# The environment proper: the package with the third-party schemes, then its kernels compiled once.
+# The environment proper: the package with the light third-party schemes, then its kernels compiled once.
 $(VENV)/run: pyproject.toml requirements.lock
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "quatspline needs Python 3.11 or newer; set PYTHON=")'
 	@$(PYTHON) -m venv $(VENV)
 	@echo "installing into $(VENV) ..."
 	@$(PIP) --editable .
 	@$(PIP) --editable '.[peers]' || echo "some third-party schemes could not be installed: their rows will read n/a"
+	@echo "more third-party schemes, whose rows read n/a without: make peers-heavy (294 MB to download)," \
+	  "peers-drake (58 MB, with Mosek, which is proprietary), peers-node (19 MB, needs Node.js)"
 	@$(RUN) warmup
 	@touch $@
 
 $(VENV)/test: $(VENV)/run
 	@$(PIP) --editable '.[peers,test,dev,dask,docs]'
 	@touch $@
+
+peers-heavy: $(VENV)/run ## Add GTSAM, OpenUSD, Pinocchio, Spatial Math and VTK: 294 MB to download, 1.3 GB on disk
+	@$(PIP) --editable '.[peers-heavy]'
+
+peers-drake: $(VENV)/run ## Add Drake, which installs Mosek (proprietary): 58 MB to download, 233 MB on disk
+	@$(PIP) --editable '.[peers-drake]'
+
+peers-node: ## Add three.js, glMatrix and Babylon.js, for which Node.js must be there: 19 MB to download, 93 MB on disk
+	@cd src/quatspline/peers/javascript && npm install --silent --no-audit --no-fund --no-package-lock
 
 reproduce: $(VENV)/run ## The paper in full and every other experiment at quick size, into results/
 	@$(RUN) run

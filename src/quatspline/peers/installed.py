@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import importlib.metadata
+import json
 import re
+import shutil
 from collections.abc import Iterator
+from pathlib import Path
 
 EXTRA = re.compile(r"^([\w.-]+).*\bextra\s*==\s*['\"]([\w.-]+)['\"]")
 """A requirement's distribution, and the extra that asks for it."""
@@ -14,18 +17,36 @@ class NotInstalledError(LookupError):
     """A library that is not here; the message says how to get it."""
 
 
+NPM = "npm:"
+"""Begins the name of a package of JavaScript."""
+JAVASCRIPT = Path(__file__).parent / "javascript"
+"""Where such packages are installed."""
+
+
 def version(peer: str) -> str:
-    """The version of a distribution that is installed.
+    """The version of a distribution, or of a package of JavaScript ("npm:three"), that is installed.
 
     Raises
     ------
     NotInstalledError
-        With the extra of this package that installs it.
+        With the extra of this package, or the target of make, that installs it.
     """
+    if peer.startswith(NPM):
+        return _javascript(peer.removeprefix(NPM))
     try:
         return importlib.metadata.version(peer)
     except importlib.metadata.PackageNotFoundError:
         raise NotInstalledError(f"{peer} is not installed{_hint(peer)}") from None
+
+
+def _javascript(package: str) -> str:
+    if shutil.which("node") is None:
+        raise NotInstalledError(f"node is not installed, which {package} needs")
+    try:
+        text = (JAVASCRIPT / "node_modules" / package / "package.json").read_text(encoding="utf-8")
+    except OSError:
+        raise NotInstalledError(f"{package} is not installed (make peers-node)") from None
+    return str(json.loads(text)["version"])
 
 
 def _hint(peer: str) -> str:

@@ -1,0 +1,106 @@
+"""Libraries of JavaScript: one process of Node.js, asked for all samples of a curve at once.
+
+The packages are those of ``javascript/package.json``, installed by ``make peers-node`` or by ``npm install``
+in that folder.  A time taken of such a curve contains two pipes, about 0.1 ms a call.
+"""
+
+from __future__ import annotations
+
+import atexit
+import json
+import os
+import shutil
+import subprocess
+import threading
+
+import numpy as np
+
+from quatspline.keyframes import Keyframes
+from quatspline.peers.installed import JAVASCRIPT
+from quatspline.peers.wrapping import PeerCurve, with_return
+from quatspline.quaternion import FloatArray
+
+TO_XYZW, TO_WXYZ = [1, 2, 3, 0], [3, 0, 1, 2]
+
+
+class NodeCurve(PeerCurve):
+    """A curve that JavaScript evaluates: its keyframes go along with every call."""
+
+    call: str
+    """What ``bridge.mjs`` is asked for."""
+
+    def _fit(self, keyframes: Keyframes) -> None:
+        q = with_return(keyframes)[:, TO_XYZW]
+        more = [extra[:, TO_XYZW] for extra in self._more(keyframes)]
+        self.table = np.column_stack([keyframes.knots, q, *more])
+
+    def _more(self, keyframes: Keyframes) -> tuple[FloatArray, ...]:
+        """What the call needs of every keyframe besides, as quaternions (n, 4), closed (n + 1, 4)."""
+        return ()
+
+    def _orientation(self, t: FloatArray) -> FloatArray:
+        if not t.size:
+            return np.empty((0, 4))
+        samples = np.column_stack([t, *self.keyframes.locate(t)])
+        return _bridge().ask(self.call, self.table, samples)[:, TO_WXYZ]
+
+
+class Bridge:
+    """The process, its pipes, and the lock that lets one thread ask at a time."""
+
+    def __init__(self) -> None:
+        node = shutil.which("node") or "node"
+        self.process = subprocess.Popen(
+            [node, str(JAVASCRIPT / "bridge.mjs")],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+        )
+        self.lock = threading.Lock()
+
+    def ask(self, call: str, keyframes: FloatArray, samples: FloatArray) -> FloatArray:
+        """Quaternions (m, 4), scalar last, of the tables that ``bridge.mjs`` describes.
+
+        Raises
+        ------
+        RuntimeError
+            When the library, or the process, fails.
+        """
+        head = {"call": call, "keyframes": keyframes.shape, "samples": samples.shape}
+        parts = (json.dumps(head).encode() + b"\n", keyframes.tobytes(), samples.tobytes())
+        with self.lock:
+            pipe, answers = self.process.stdin, self.process.stdout
+            assert pipe is not None and answers is not None
+            pipe.write(b"".join(parts))
+            pipe.flush()
+            error = json.loads(answers.readline() or '{"error": "its process ended"}').get("error")
+            if error:
+                raise RuntimeError(f"node, {call}: {error}")
+            q = answers.read(8 * 4 * len(samples))
+        return np.frombuffer(q, dtype=float).reshape(-1, 4)
+
+    def close(self) -> None:
+        """End the process: it leaves where its input ends."""
+        if self.process.stdin is not None:
+            self.process.stdin.close()
+        if self.process.stdout is not None:
+            self.process.stdout.close()
+        self.process.wait()
+
+
+_bridges: dict[int, Bridge] = {}
+"""By process: a fork's child must not read its parent's answers."""
+
+
+def _bridge() -> Bridge:
+    own = os.getpid()
+    if own not in _bridges:
+        _bridges[own] = Bridge()
+        atexit.register(_close)
+    return _bridges[own]
+
+
+def _close() -> None:
+    bridge = _bridges.pop(os.getpid(), None)
+    if bridge is not None:
+        bridge.close()
