@@ -32,7 +32,9 @@ def hermite_tangents(keyframes: Keyframes) -> FloatArray:
     """Derivatives (n, 4), closed (n + 1, 4), of a curve in R^4 by the parabola through three keyframes."""
     q, h = with_return(keyframes), keyframes.spacings
     slopes = parabola_slopes(np.diff(q, axis=0) / h[:, None], h, keyframes.closed)
-    if keyframes.closed:  # seen from the end the first chord has the closing sign, and the other way round
+    if (
+        keyframes.closed
+    ):  # seen from the end the first chord has the closing sign, and the other way round
         s, sign = np.diff(q, axis=0)[[0, -1]] / h[[0, -1], None], keyframes.sign
         first = (h[0] * sign * s[1] + h[-1] * s[0]) / (h[0] + h[-1])
         slopes[0], slopes[-1] = first, sign * first

@@ -12,6 +12,7 @@ import os
 import shutil
 import subprocess
 import threading
+from contextlib import suppress
 
 import numpy as np
 
@@ -69,22 +70,30 @@ class Bridge:
         head = {"call": call, "keyframes": keyframes.shape, "samples": samples.shape}
         parts = (json.dumps(head).encode() + b"\n", keyframes.tobytes(), samples.tobytes())
         with self.lock:
-            pipe, answers = self.process.stdin, self.process.stdout
-            assert pipe is not None and answers is not None
-            pipe.write(b"".join(parts))
-            pipe.flush()
-            error = json.loads(answers.readline() or '{"error": "its process ended"}').get("error")
-            if error:
-                raise RuntimeError(f"node, {call}: {error}")
-            q = answers.read(8 * 4 * len(samples))
+            answer, q = self._asked(b"".join(parts), 8 * 4 * len(samples))
+        if "error" in answer:
+            raise RuntimeError(f"{call}, by node: {answer['error']}")
         return np.frombuffer(q, dtype=float).reshape(-1, 4)
+
+    def _asked(self, request: bytes, size: int) -> tuple[dict[str, str], bytes]:
+        """What the process says, and the bytes that follow if all is well."""
+        pipe, answers = self.process.stdin, self.process.stdout
+        assert pipe is not None
+        assert answers is not None
+        try:
+            pipe.write(request)
+            pipe.flush()
+            answer = json.loads(answers.readline())
+            return answer, b"" if "error" in answer else answers.read(size)
+        except (OSError, ValueError):  # a pipe that is broken, half a line
+            return {"error": "its process ended"}, b""
 
     def close(self) -> None:
         """End the process: it leaves where its input ends."""
-        if self.process.stdin is not None:
-            self.process.stdin.close()
-        if self.process.stdout is not None:
-            self.process.stdout.close()
+        for pipe in (self.process.stdin, self.process.stdout):
+            with suppress(OSError):  # what a broken pipe still held
+                if pipe is not None:
+                    pipe.close()
         self.process.wait()
 
 
@@ -94,6 +103,8 @@ _bridges: dict[int, Bridge] = {}
 
 def _bridge() -> Bridge:
     own = os.getpid()
+    if own in _bridges and _bridges[own].process.poll() is not None:
+        _close()
     if own not in _bridges:
         _bridges[own] = Bridge()
         atexit.register(_close)
