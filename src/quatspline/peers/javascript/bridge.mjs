@@ -1,9 +1,10 @@
 // One process that evaluates curves of JavaScript libraries for Python, all samples of a curve at once.
 //
-// A request is a line of JSON, {"call", "keyframes": [rows, columns], "samples": [rows, columns]}, and both
-// tables as float64, row by row.  Columns of keyframes: time, x, y, z, w, and what the call needs besides;
-// of samples: time, segment, share of the segment.  The answer is a line of JSON, {} or {"error"}, and
-// without an error x, y, z, w of every sample.
+// A request: four bytes, the length of the JSON that follows as an unsigned integer, least byte first; the JSON,
+// {"call", "keyframes": [rows, columns], "samples": [rows, columns]}; both tables as float64, row by row.
+// Columns of keyframes are time, x, y, z, w, and what the call needs besides; of samples time, segment, and
+// share of the segment.  The answer is a line of JSON, {} or {"error"}, and without an error x, y, z, w of
+// every sample.
 
 import { readSync, writeSync } from 'node:fs';
 
@@ -103,12 +104,6 @@ function read(count) {
   return bytes;
 }
 
-function readLine() {
-  const bytes = [];
-  for (let byte; (byte = read(1)[0]) !== 10; ) bytes.push(byte);
-  return Buffer.from(bytes).toString('utf8');
-}
-
 function write(bytes) {
   for (let done = 0; done < bytes.length; ) done += writeSync(1, bytes, done);
 }
@@ -116,7 +111,7 @@ function write(bytes) {
 const ready = {};
 
 for (;;) {
-  const request = JSON.parse(readLine());
+  const request = JSON.parse(read(read(4).readUInt32LE()).toString('utf8'));
   const table = (shape) => new Table(shape, read(8 * shape[0] * shape[1]));
   const keyframes = table(request.keyframes), samples = table(request.samples);
   try {
