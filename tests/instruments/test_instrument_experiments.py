@@ -38,7 +38,15 @@ COLUMNS = {
         "failure",
     },
     "invariance": {"property", "deviation", "relative", "invariant"},
-    "locality": {"offset", "response", "amplification", "support", "decay", "agrees"},
+    "locality": {
+        "offset",
+        "response",
+        "support",
+        "decay",
+        "agrees",
+        "lookahead",
+        "lookahead_agrees",
+    },
     "noise": {"error", "gain", "gain_omega", "gain_alpha"},
 }
 

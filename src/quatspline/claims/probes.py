@@ -15,6 +15,7 @@ from quatspline import quaternion
 from quatspline.catalogue import build, scheme
 from quatspline.claims import own
 from quatspline.curve import Curve
+from quatspline.instruments import lookahead as ahead
 from quatspline.instruments.accuracy import inner_angle, measured_order
 from quatspline.instruments.continuity import jumps, measured_continuity, speeds
 from quatspline.instruments.fairness import fairness
@@ -99,6 +100,12 @@ def support(name: str, degrees: float = 30) -> int | str:
     """Keyframes that shape a segment; "all" where the response has a tail that decays."""
     found = locality(responses(builder(name), *walked(MANY, degrees)))
     return "all" if np.isfinite(found["decay"]) else found["support"]
+
+
+def lookahead(name: str, degrees: float = 30) -> int | str:
+    """Keyframes after a segment's own two that shape it; "all" where the last one is always felt."""
+    found = ahead.lookahead(ahead.moved(builder(name), *walked(ahead.COUNT, degrees)))
+    return "all" if found is None else found
 
 
 def constant_rate(name: str, degrees: float = 50, uneven: bool = False, count: int = 17) -> str:

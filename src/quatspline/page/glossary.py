@@ -46,6 +46,7 @@ GLOSSARY: dict[str, Column] = {
     "response": Column("movement of a segment over that of the keyframe", "", "less"),
     "amplification": Column("largest response to the change of a keyframe", "", "less"),
     "support": Column("segments that a keyframe shapes", "", "less"),
+    "lookahead": Column("keyframes after a segment that shape it", "", "less"),
     "decay": Column("factor of the response a segment farther", "", "less"),
     "gain": Column("movement of the orientation over the errors", "", "less"),
     "gain_omega": Column("movement of the velocity times spacing over the errors", "", "less"),
