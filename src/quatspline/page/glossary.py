@@ -92,6 +92,13 @@ GLOSSARY: dict[str, Column] = {
     "fairness.peak_median": Column(
         "median of peak acceleration over that of the minimum", "", "less"
     ),
+    "sphere_degrees": Column("angle between the keyframes on the sphere", "degrees"),
+    "terms": Column("terms of the polynomial"),
+    "steps": Column("steps of the recurrence an arc"),
+    "slerp-variants.error": Column("largest angle from slerp", ANGLE, "less"),
+    "sphere_error_degrees": Column("largest angle from slerp on the sphere", "degrees", "less"),
+    "growth": Column("power of the steps that the drift grows with", "", "less"),
+    "closed_form": Column("largest angle from slerp by a formula", ANGLE),
     "choosing.order": Column("order of convergence, uniform times", "", "more"),
     "choosing.support": Column("keyframes that shape a segment"),
     "smooth_k": Column("k of C^k at steps of 60 degrees", "", "more"),
