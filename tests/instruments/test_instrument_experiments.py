@@ -34,6 +34,8 @@ COLUMNS = {
         "median",
         "jerk_median",
         "length_median",
+        "curvature_median",
+        "curvature_infinite",
         "peak_median",
         "failure",
     },

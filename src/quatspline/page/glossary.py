@@ -92,6 +92,12 @@ GLOSSARY: dict[str, Column] = {
     "fairness.peak_median": Column(
         "median of peak acceleration over that of the minimum", "", "less"
     ),
+    "fairness.curvature_median": Column(
+        "median of curvature energy over the least of no longer paths", "", "less"
+    ),
+    "curvature_sets": Column("sets that the median of curvature energy rests on"),
+    "curvature_infinite": Column("sets on which the curvature energy is infinite", "", "less"),
+    "curvature_reason": Column("why it is infinite there"),
     "sphere_degrees": Column("angle between the keyframes on the sphere", "degrees"),
     "terms": Column("terms of the polynomial"),
     "steps": Column("steps of the recurrence an arc"),
