@@ -20,6 +20,7 @@ from quatspline.instruments.accuracy import inner_angle, measured_order
 from quatspline.instruments.continuity import jumps, measured_continuity, speeds
 from quatspline.instruments.fairness import fairness
 from quatspline.instruments.locality import locality, responses
+from quatspline.instruments.smoothness import inner_jumps, inner_smoothness
 from quatspline.instruments.trials import builder
 from quatspline.quaternion import FloatArray
 from quatspline.trajectories.sets import torque_sets
@@ -64,6 +65,14 @@ def continuity(
 ) -> int:
     """k of C^k at keyframes; -1 where the curve leaps, 3 where no derivative up to the third jumps."""
     return measured_continuity(jumps(builder(name)(*walked(count, degrees, uneven, seed))))
+
+
+def inner_continuity(
+    name: str, count: int = 4, degrees: float = 60, uneven: bool = False, seed: int = 0
+) -> int:
+    """k of C^k inside segments; 6 where no derivative up to the sixth jumps, and 1 at least."""
+    curve = builder(name)(*walked(count, degrees, uneven, seed))
+    return inner_smoothness(inner_jumps(curve))
 
 
 def miss(
