@@ -50,6 +50,8 @@ COLUMNS = {
         "lookahead_agrees",
     },
     "noise": {"error", "gain", "gain_omega", "gain_alpha"},
+    "reconstruct": {"clip", "filter", "every", "over_slerp", "worst_joint", "end_cm", "alpha"},
+    "reduce": {"clip", "filter", "error_degrees", "keyframes", "over_slerp", "worst_joint"},
 }
 
 
