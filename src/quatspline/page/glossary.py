@@ -92,7 +92,7 @@ GLOSSARY: dict[str, Column] = {
     "fairness.peak_median": Column(
         "median of peak acceleration over that of the minimum", "", "less"
     ),
-    "fairness.curvature_median": Column(
+    "curvature_median": Column(
         "median of curvature energy over the least of no longer paths", "", "less"
     ),
     "curvature_sets": Column("sets that the median of curvature energy rests on"),
