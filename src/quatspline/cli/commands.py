@@ -35,7 +35,8 @@ CLAIMS: tuple[tuple[str, Callable[[Any], Any]], ...] = (
     ("C^k", lambda s: f"C{s.continuity}"),
     ("interpolates", lambda s: _yes(s.interpolates)),
     ("order", lambda s: str(s.order)),
-    ("support", lambda s: "all" if s.support is None else str(s.support)),
+    ("support", lambda s: _all_or(s.support)),
+    ("lookahead", lambda s: _all_or(s.lookahead)),
     ("constant rate", lambda s: s.constant_rate),
     ("uneven times", lambda s: _yes(s.non_uniform)),
     ("closes", lambda s: _yes(s.closable)),
@@ -127,6 +128,10 @@ def _claims(item: Found) -> list[str]:
         return "?"
 
     return [cell(show) for _, show in CLAIMS]
+
+
+def _all_or(keyframes: int | None) -> str:
+    return "all" if keyframes is None else str(keyframes)
 
 
 def _yes(claim: bool) -> str:

@@ -154,8 +154,8 @@ SECTIONS: tuple[Section, ...] = (
     Section(
         "accuracy",
         "Accuracy",
-        "Error to an analytic motion against the keyframe spacing.",
-        ("accuracy",),
+        "Error to an analytic motion against the keyframe spacing; what stands in for slerp, against slerp.",
+        ("accuracy", "slerp-variants"),
         (
             Plot(
                 "accuracy",
