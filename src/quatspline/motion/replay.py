@@ -23,7 +23,7 @@ from quatspline.system.packing import packed
 BUDGET = 31 * 500
 """Points times frames that are stored at most: 93 kB a figure."""
 
-SMOOTH = 50.0
+SMOOTH = 45.0
 """Frames a second that are enough to the eye."""
 
 PLACES, ANGLES = 32767, 65535

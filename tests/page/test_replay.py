@@ -1,0 +1,195 @@
+"""Recorded motion for the player: what is stored of it, and that the page has it from the folder alone."""
+
+from __future__ import annotations
+
+import base64
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pages import EVERY, REBUILT, Elements, loop
+from quatspline import quaternion
+from quatspline.motion import Motion
+from quatspline.motion.keeping import left_out, moving
+from quatspline.motion.replay import BUDGET, PARTS, WIRES, replay, wires
+from quatspline.page import write_page
+from quatspline.runs.results import Results
+from quatspline.trajectories.figure_walk import figure_walk
+
+CLIP = 100_000
+"""Bytes of the points of a clip of 31 joints and 500 frames."""
+
+
+def places(data: dict[str, Any], text: str) -> np.ndarray:
+    """Points (n, P, 3) as the browser has them."""
+    whole = np.frombuffer(base64.b64decode(text), "<i2").astype(float)
+    points = 1 + max(max(line) for line in data["lines"])
+    return np.array(data["origin"]) + data["step"] * whole.reshape(-1, points, 3)
+
+
+def angles(data: dict[str, Any], scheme: str) -> np.ndarray:
+    """Degrees (n, J) as the browser has them."""
+    stored = data["schemes"][scheme]
+    whole = np.frombuffer(base64.b64decode(stored["angles"]), "<u2").astype(float)
+    return stored["angle_step"] * whole.reshape(-1, len(data["joints"]))
+
+
+def shown(data: dict[str, Any], motion: Motion) -> np.ndarray:
+    """The indices of the frames that are stored."""
+    first, last, count = data["frames"]
+    assert count == len(motion.times)
+    times = np.frombuffer(base64.b64decode(data["times"]), "<f4")
+    frames = np.linspace(first, last, len(times)).round().astype(int)
+    np.testing.assert_allclose(data["start"] + times, motion.times[frames], rtol=1e-6)
+    return frames
+
+
+@pytest.fixture(scope="module")
+def walk() -> Motion:
+    return figure_walk()
+
+
+@pytest.fixture(scope="module")
+def data(walk: Motion) -> dict[str, Any]:
+    return replay(walk, REBUILT, EVERY, title="walk", source="made")
+
+
+def test_the_truth_is_the_forward_kinematics(walk: Motion, data: dict[str, Any]) -> None:
+    assert set(data) == set(PARTS)
+    stored, frames = places(data, data["truth"]), shown(data, walk)
+    joints, ends = walk.world()[1][frames], walk.ends()
+    assert stored.shape[1] == len(walk.tracks) + len(walk.skeleton.ends)
+    within = {"rtol": 0.0, "atol": 0.5001 * data["step"]}
+    np.testing.assert_allclose(stored[:, : len(walk.tracks)], joints, **within)
+    for joint, tip in zip(data["joints"], data["tips"], strict=True):
+        if joint in ends:
+            np.testing.assert_allclose(stored[:, tip], ends[joint][frames], **within)
+    assert data["step"] < 2e-4  # m, of a walk of six
+
+
+def test_a_scheme_is_its_curve_on_the_true_path(walk: Motion, data: dict[str, Any]) -> None:
+    frames = shown(data, walk)
+    for name in REBUILT:
+        q, _ = walk.curve(name, EVERY)(walk.times[frames])
+        part = walk.frames(frames)
+        rebuilt = part.moved(part.stamps, q, part.positions)
+        stored = places(data, data["schemes"][name]["places"])[:, : len(walk.tracks)]
+        np.testing.assert_allclose(stored, rebuilt.world()[1], atol=0.5001 * data["step"])
+        off = np.degrees(quaternion.distance(q, walk.quaternions[frames]))[:, moving(walk)]
+        step = data["schemes"][name]["angle_step"]
+        np.testing.assert_allclose(angles(data, name), off, atol=0.5001 * step)
+        assert step <= off.max() / 60000
+
+
+def test_keyframes_are_where_nothing_is_off(walk: Motion, data: dict[str, Any]) -> None:
+    frames = shown(data, walk)
+    keys = np.flatnonzero(~left_out(walk, EVERY)[frames])
+    assert data["keyframes"] == keys.tolist()
+    assert len(keys) > 30
+    for name in REBUILT:
+        assert angles(data, name)[keys].max() < 1e-4
+        assert np.delete(angles(data, name), keys, axis=0).max() > 1.0
+
+
+def test_data_stay_small(data: dict[str, Any]) -> None:
+    def clip(frames: int, joints: int) -> Motion:
+        return long_chain(frames, joints)
+
+    for motion in (clip(500, 31), clip(3000, 31)):
+        made = replay(motion, ["slerp"], 8, title="")
+        assert len(base64.b64decode(made["truth"])) <= min(6 * BUDGET, CLIP)
+    assert len(json.dumps(data)) < 80_000 * (1 + len(REBUILT))
+
+
+def long_chain(frames: int, joints: int) -> Motion:
+    """A chain of joints, each of which turns a little."""
+    from quatspline.motion import Skeleton
+
+    t = np.arange(frames) / 120.0
+    half = 0.2 * np.sin(t[:, None, None] * (1 + np.arange(joints)[:, None] / joints) + np.arange(3))
+    skeleton = Skeleton(np.arange(-1, joints - 1), np.full((joints, 3), 0.1), ("XYZ",) * joints)
+    names = [f"joint {k}" for k in range(joints)]
+    return Motion(t, quaternion.exp(half), np.full((frames, joints, 3), 0.1), names, skeleton)
+
+
+def test_of_a_long_clip_the_middle_is_shown() -> None:
+    motion = long_chain(3001, 31)
+    made = replay(motion, ["slerp"], 8, title="")
+    first, last, count = made["frames"]
+    assert count == 3001
+    assert first % 8 == 0
+    assert abs(first - (count - 1 - last)) <= 8
+    frames = shown(made, motion)
+    np.testing.assert_allclose(
+        places(made, made["truth"]), motion.world()[1][frames], atol=0.5001 * made["step"]
+    )
+
+
+def test_a_body_goes_its_own_way() -> None:
+    motion = loop()
+    made = replay(motion, ("slerp", "quartic"), EVERY, title="loop")
+    assert (made["joints"], made["tips"], made["upright"]) == (["body"], [0], False)
+    frames = shown(made, motion)
+    truth = places(made, made["truth"])
+    np.testing.assert_allclose(truth[:, 0], motion.positions[frames, 0], atol=made["step"])
+    arms = np.linalg.norm(truth - truth[:, :1], axis=-1)
+    size = 0.12 * np.ptp(motion.positions, axis=0).max()
+    np.testing.assert_allclose(
+        arms, np.tile(size * np.linalg.norm(WIRES, axis=1), (len(arms), 1)), atol=2 * made["step"]
+    )
+    for name in ("slerp", "quartic"):
+        _, x = motion.curve(name, EVERY)(motion.times[frames])
+        stored = places(made, made["schemes"][name]["places"])
+        np.testing.assert_allclose(stored[:, 0], x[:, 0], atol=made["step"])
+
+
+def test_a_point_that_a_joint_moves_is_not_at_the_joint(walk: Motion) -> None:
+    figure = wires(walk.frames(slice(0, 1)))
+    for joint, tip in enumerate(figure.tips):
+        assert np.linalg.norm(figure.points[0, tip] - figure.points[0, joint]) > 0.01
+    assert len(figure.lines) == figure.points.shape[1] - 1
+
+
+def test_what_does_not_apply_is_told(walk: Motion) -> None:
+    part = walk.frames(slice(0, 64))
+    made = replay(part, ("shoemake-bezier", "slerp"), 16, title="")
+    assert list(made["schemes"]) == made["pair"] == ["slerp"]
+    assert "uniform" in made["refused"]["shoemake-bezier"]
+    with pytest.raises(ValueError, match="no scheme rebuilds it: shoemake-bezier: "):
+        replay(part, ("shoemake-bezier",), 16, title="")
+
+
+def test_the_page_is_drawn_from_the_folder_alone(page_folder: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "copy"
+    shutil.copytree(page_folder, folder)
+    page = Elements(write_page(folder, scenes=[]).read_text(encoding="utf-8"))
+    assert page.data("replays") == json.loads((folder / "reconstruct.replay.json").read_text())
+    assert "recorded" in {a["id"] for tag, a, _ in page.items if tag == "section"}
+    (folder / "reconstruct.replay.json").unlink()
+    bare = Elements(write_page(folder, scenes=[]).read_text(encoding="utf-8"))
+    assert not any(a.get("id") == "replay" for _, a, _ in bare.items)
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        ("[", "not a file in JSON"),
+        ("{}", "a list is expected"),
+        ("[1]", "motion 0: an object is expected, found 1"),
+        ('[{"title": ""}]', "motion 0: 'source' is missing"),
+    ],
+)
+def test_a_file_that_holds_no_motions_is_refused(tmp_path: Path, content: str, told: str) -> None:
+    import pandas as pd
+
+    results = Results(tmp_path)
+    results.table("x", pd.DataFrame({"a": [1]}))
+    results.text("x.replay.json", content)
+    with pytest.raises(ValueError, match=r"x\.replay\.json: ") as caught:
+        write_page(tmp_path, scenes=[])
+    assert told in str(caught.value)
+    assert not (tmp_path / "report.html").exists()
