@@ -121,6 +121,7 @@ GLOSSARY: dict[str, Column] = {
     "error_degrees": Column("allowed error", "degrees"),
     "share": Column("keyframes over frames", "", "less"),
     "per_second": Column("keyframes of a joint", "1/s", "less"),
+    "rms": Column("rms angle of the joint at frames left out", ANGLE, "less"),
     "rms_median": Column("median of the joints' rms angles at frames left out", ANGLE, "less"),
     "rms_worst": Column("largest of the joints' rms angles", ANGLE, "less"),
     "largest": Column("largest angle at a frame left out", ANGLE, "less"),

@@ -294,7 +294,7 @@ KEPT: tuple[Section, ...] = (
         "kept",
         "Schemes compared",
         "One row a scheme, at the frames left out. Sort by any column: the line above the table states the criterion.",
-        ("kept",),
+        ("kept", "joints"),
         (
             Plot(
                 "kept",
