@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import stat
+import sys
+import types
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -122,3 +124,20 @@ def test_code_is_kept_in_the_folder_of_its_sources_and_numbas_setting_is_left_al
     assert not loads(folder)
     assert loads(folder)
     assert before == config.CACHE_DIR
+
+
+def test_the_same_file_in_two_folders_has_code_for_each(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A module that was loaded by path is known by it: the code of one checkout is no use in another."""
+    folder = tmp_path / "base" / "0123456789abcdef"
+    for name in ("checkout_one", "checkout_two"):
+        module = types.ModuleType(name)
+        monkeypatch.setitem(sys.modules, name, module)
+        exec(compile("def twice(x):\n    return 2.0 * x\n", __file__, "exec"), module.__dict__)
+        for expected in (False, True):
+            function: Any = numba.njit(module.twice)
+            function._cache = disk.cached_in(folder, module.twice)
+            assert function(1.5) == 3.0
+            assert bool(function.stats.cache_hits) == expected
+        monkeypatch.delitem(sys.modules, name)
