@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
-from quatspline.kernels.engine import always_compiled
+from quatspline.engines.engine import always_compiled
 from quatspline.system.stdout import say
 
 if TYPE_CHECKING:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
+from quatspline.findings.recorded import TOPIC
 from quatspline.instruments.summary import ALL
 from quatspline.page.plots import Plot
 
@@ -257,7 +258,7 @@ SECTIONS: tuple[Section, ...] = (
         ),
         block="recorded",
         needs="replays",
-        topic="recorded",
+        topic=TOPIC,
         folded=True,
     ),
     Section("claims", "Claims and verdicts", "Each claim beside what was measured.", ("claims",)),
