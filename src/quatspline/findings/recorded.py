@@ -8,11 +8,12 @@ from typing import Any
 
 from quatspline.findings.quotes import Ledger, Part, Quote, said
 from quatspline.instruments.summary import ALL
-from quatspline.trajectories.clips import CONTROLS
+from quatspline.trajectories.clips import CONTROLS, OWN
 
 TOPIC = "recorded"
 
 SCHEMES = ("kim", "local-quintic", "squad", "quartic")
+CIRCULAR = ("circular-blend", "biarc")
 EVERY, RAW = 16, "none"
 """Of the experiment reconstruct: which frames are kept, and which filter is none."""
 
@@ -28,8 +29,8 @@ def worth(cell: Ledger) -> tuple[Part, ...]:
     where: dict[str, Any] = {"filter": RAW, "every": EVERY}
     slerp = {"clip": ALL, "scheme": "slerp", **where}
     return said(
-        "Rebuilt from every {every:d}th frame, {joints:d} recorded joints are off by these multiples of slerp's rms "
-        f"angle (geometric mean): {_listed('r', '.2f')}. On the analytic {{tumble}} with the same frames kept they "
+        f"Rebuilt from every {{every:d}}th frame, {_whose(cell)} are off by these multiples of slerp's rms angle "
+        f"(geometric mean): {_listed('r', '.2f')}. On the analytic {{tumble}} with the same frames kept they "
         f"are off by {_listed('t', '.3f')}.",
         every=cell("reconstruct", "every", **slerp),
         joints=cell("reconstruct", "compared_joints", **slerp),
@@ -44,9 +45,9 @@ def cause(cell: Ledger) -> tuple[Part, ...]:
     raw: dict[str, Any] = {"filter": RAW, "every": DENSE}
     calm: dict[str, Any] = {"clip": ALL, "filter": CALM, "every": DENSE}
     return said(
-        "What is fast is the cause, the noise with it: of the recordings below {calm}, every {every:d}th frame kept, "
-        f"the multiples are {_listed('c', '.3f')}; of the recordings as they are {_listed('r', '.2f')}; of noise "
-        f"without motion {_listed('n', '.2f')}.",
+        "What is fast is the cause, the noise with it: of the motion below {calm}, every {every:d}th frame kept, the "
+        f"multiples are {_listed('c', '.3f')}; of the motion as it is {_listed('r', '.2f')}; of noise without motion "
+        f"{_listed('n', '.2f')}.",
         calm=cell("reconstruct", "filter", scheme="slerp", **calm),
         every=cell("reconstruct", "every", scheme="slerp", **calm),
         **_over_slerp(cell, "c", **calm),
@@ -59,12 +60,10 @@ def circles(cell: Ledger) -> tuple[Part, ...]:
     """Schemes through circles, on hinges that reverse."""
     return said(
         "Where a hinge reverses, a circle through three keyframes may go the long way round: with every {every:d}th "
-        "frame kept, a joint is off by up to {blend:.1f} degrees by circular-blend and {biarc:.1f} by biarc, by slerp "
-        "{slerp:.1f}.",
+        f"frame kept, a joint is off by up to {{v0:.1f}} degrees by {CIRCULAR[0]}, {{v1:.1f}} by {CIRCULAR[1]}, "
+        "{v2:.1f} by slerp.",
         every=cell("reconstruct", "every", clip=ALL, scheme="slerp", filter=RAW, every=EVERY),
-        blend=_largest(cell, "circular-blend"),
-        biarc=_largest(cell, "biarc"),
-        slerp=_largest(cell, "slerp"),
+        **{f"v{i}": _largest(cell, name) for i, name in enumerate((*CIRCULAR, "slerp"))},
     )
 
 
@@ -89,13 +88,23 @@ def keyframes(cell: Ledger) -> tuple[Part, ...]:
     steady = {**raw, "filter": STEADY}
     return said(
         "To rebuild every frame within {allowed:g} degrees the schemes need these multiples of slerp's keyframes "
-        f"(geometric mean over {{joints:d}} joints): of recordings as they are {_listed('r', '.2f')}; below {{steady}} "
+        f"(geometric mean over {{joints:d}} joints): of the motion as it is {_listed('r', '.2f')}; below {{steady}} "
         f"{_listed('s', '.2f')}.",
         allowed=cell("reduce", "error_degrees", scheme="slerp", **raw),
         joints=cell("reduce", "compared_joints", scheme="slerp", **raw),
         steady=cell("reduce", "filter", scheme="slerp", **steady),
         **_over_slerp(cell, "r", "reduce", **raw),
         **_over_slerp(cell, "s", "reduce", **steady),
+    )
+
+
+def _whose(cell: Ledger) -> str:
+    """Whose joints they are, as the subject of a sentence that quotes how many."""
+    made = cell.values("reconstruct", "clip", scheme="slerp") == sorted([ALL, OWN, *CONTROLS])
+    return (
+        "the {joints:d} joints of the walk that this project's generator made (no recording was given)"
+        if made
+        else "{joints:d} recorded joints"
     )
 
 
