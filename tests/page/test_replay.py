@@ -11,13 +11,18 @@ from typing import Any
 import numpy as np
 import pytest
 
+import quatspline as qs
 from pages import EVERY, REBUILT, Elements, loop
 from quatspline import quaternion
+from quatspline.catalogue import load
+from quatspline.cli import running
 from quatspline.motion import Motion
 from quatspline.motion.keeping import left_out, moving
 from quatspline.motion.replay import BUDGET, PARTS, WIRES, replay, wires
 from quatspline.page import write_page
+from quatspline.runs.experiment import Run, files
 from quatspline.runs.results import Results
+from quatspline.trajectories.credits import credit
 from quatspline.trajectories.figure_walk import figure_walk
 
 CLIP = 100_000
@@ -147,6 +152,42 @@ def test_a_body_goes_its_own_way() -> None:
         np.testing.assert_allclose(stored[:, 0], x[:, 0], atol=made["step"])
 
 
+@pytest.mark.parametrize("suffix", [".bvh", ".glb"])
+def test_what_was_resampled_and_written_is_played_as_it_was(
+    walk: Motion, tmp_path: Path, suffix: str
+) -> None:
+    fine = walk.frames(slice(0, 120)).resample(240, "local-quintic")
+    qs.write_motion(tmp_path / f"out{suffix}", fine)
+    again = qs.read_motion(tmp_path / f"out{suffix}")
+    found, expected = (replay(m, ["slerp"], EVERY, title="") for m in (again, fine))
+    assert found["keyframes"] == expected["keyframes"]
+    stored, own = (places(each, each["truth"]) for each in (found, expected))
+    near = 1e-5 + found["step"] + expected["step"]
+    for joint in expected["joints"]:
+        tips = (each["tips"][each["joints"].index(joint)] for each in (found, expected))
+        np.testing.assert_allclose(stored[:, next(tips)], own[:, next(tips)], atol=near)
+    off = [angles(each, "slerp") for each in (found, expected)]
+    order = [expected["joints"].index(joint) for joint in found["joints"]]
+    np.testing.assert_allclose(off[0], off[1][:, order], atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("rate", "every", "stride"),
+    [(120, 16, 2), (120, 8, 1), (240, 16, 2), (240, 32, 4), (30, 32, 1)],
+)
+def test_what_is_stored_shows_motion_and_the_course_of_errors(
+    rate: int, every: int, stride: int
+) -> None:
+    motion = loop(300)
+    made = replay(
+        motion.moved(np.arange(300) / rate, motion.quaternions, motion.positions),
+        ["slerp"],
+        every,
+        title="",
+    )
+    assert made["keyframes"][1] == every // stride
+
+
 def test_a_point_that_a_joint_moves_is_not_at_the_joint(walk: Motion) -> None:
     figure = wires(walk.frames(slice(0, 1)))
     for joint, tip in enumerate(figure.tips):
@@ -193,3 +234,52 @@ def test_a_file_that_holds_no_motions_is_refused(tmp_path: Path, content: str, t
         write_page(tmp_path, scenes=[])
     assert told in str(caught.value)
     assert not (tmp_path / "report.html").exists()
+
+
+EXPERIMENT = """
+import pandas as pd
+from quatspline.motion.replay import replay
+from quatspline.trajectories.figure_walk import figure_walk
+TITLE, PAPER = "Small", False
+def measure(run):
+    return pd.DataFrame({"x": [1]})
+def replays(run):
+    return [replay(figure_walk(64), run.schemes or ["slerp"], 16, title="a walk")]
+"""
+
+
+def test_a_run_writes_motions_that_its_page_plays(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out, file = tmp_path / "out", tmp_path / "experiments" / "small.py"
+    file.parent.mkdir()
+    file.write_text(EXPERIMENT)
+    monkeypatch.setenv("QUATSPLINE_EXPERIMENTS", str(file.parent))
+    assert running.run(["small"], schemes=["squad"], out=out) == []
+    [played] = json.loads((out / "small.replay.json").read_text())
+    assert (played["title"], played["pair"]) == ("a walk", ["squad"])
+    manifest = json.loads((out / "manifest.json").read_text())
+    assert "small.replay.json" in manifest["experiments"]["small"]["files"]
+    page = Elements(write_page(out, scenes=[]).read_text(encoding="utf-8"))
+    assert page.data("replays") == [played]
+    monkeypatch.delattr(load(file, "experiment"), "replays")
+    assert running.run(["small"], out=out) == []
+    assert not (out / "small.replay.json").exists()
+
+
+def test_the_experiment_plays_the_first_of_each_kind_with_its_owners_words(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("QUATSPLINE_MOTIONS", raising=False)
+    module = load(files()["reconstruct"], "experiment")
+    [own] = module.replays(Run(quick=True, schemes=["slerp"]))
+    assert (own["title"], own["source"]) == ("figure-walk", credit("figure-walk"))
+    assert "nobody recorded it" in own["source"]
+    qs.write_motion(tmp_path / "12_01.bvh", figure_walk(64))
+    qs.write_motion(tmp_path / "a.tum", loop(64))
+    qs.write_motion(tmp_path / "b.bvh", figure_walk(64))
+    monkeypatch.setenv("QUATSPLINE_MOTIONS", str(tmp_path))
+    played = module.replays(Run(quick=True, schemes=["slerp"]))
+    assert [each["title"] for each in played] == ["12_01.bvh", "a.tum"]
+    assert "mocap.cs.cmu.edu" in played[0]["source"]
+    assert played[1]["source"] == ""

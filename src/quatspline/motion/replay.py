@@ -24,7 +24,9 @@ BUDGET = 31 * 500
 """Points times frames that are stored at most: 93 kB a figure."""
 
 SMOOTH = 45.0
-"""Frames a second that are enough to the eye."""
+"""Frames a second that are enough to the eye ..."""
+BETWEEN = 8
+"""... and from keyframe to keyframe for an error to show its course."""
 
 PLACES, ANGLES = 32767, 65535
 """The largest whole numbers that hold a place and an angle."""
@@ -168,10 +170,10 @@ def _shown(motion: Motion, every: int) -> NDArray[np.intp]:
 
 
 def _stride(motion: Motion, every: int) -> int:
-    """The largest part of ``every`` that leaves enough frames a second; 1 where pieces begin anywhere."""
+    """The largest part of ``every`` that leaves enough frames; 1 where pieces begin anywhere."""
     rate = 1.0 / float(np.median(np.diff(motion.times)))
-    parts = [k for k in range(1, every + 1) if every % k == 0 and rate / k >= SMOOTH]
-    return max(parts, default=1) if len(motion.edges) == 2 else 1
+    most = min(rate / SMOOTH, every / BETWEEN) if len(motion.edges) == 2 else 1
+    return max(k for k in range(1, every + 1) if every % k == 0 and k <= max(most, 1))
 
 
 def _rebuilt(

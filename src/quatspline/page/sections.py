@@ -235,8 +235,8 @@ SECTIONS: tuple[Section, ...] = (
     Section(
         "recorded",
         "Recorded motion",
-        "What people record, rebuilt from every so many-th frame: the recording is pale, two schemes lie over it, and "
-        "below stands by what angle they are off.",
+        "What people record, rebuilt from every so many-th frame: the motion itself is pale, two schemes lie over it, "
+        "and below stands by what angle they are off.",
         ("reconstruct", "reduce"),
         (
             Plot(
@@ -244,7 +244,7 @@ SECTIONS: tuple[Section, ...] = (
                 ("every",),
                 ("over_slerp", "rms_degrees", "largest_degrees", "end_cm", "omega", "alpha"),
                 facets=("clip", "filter"),
-                start={"clip": ALL},
+                start={"clip": ALL, "filter": "none"},
                 log=(True, True),
             ),
             Plot(
@@ -252,7 +252,7 @@ SECTIONS: tuple[Section, ...] = (
                 ("error_degrees",),
                 ("over_slerp", "share", "per_second"),
                 facets=("clip", "filter"),
-                start={"clip": ALL},
+                start={"clip": ALL, "filter": "none"},
                 log=(True, False),
             ),
         ),
