@@ -109,13 +109,17 @@ PLAYED, KEPT_PLAYED = ("slerp", "local-quintic", "kim", "squad", "quartic", "cir
 
 
 def replays(run: Run) -> list[dict[str, Any]]:
-    return [_replay(name, run.schemes or PLAYED) for name in each_kind()]
+    return [each for name in each_kind() for each in _replay(name, run.schemes or PLAYED)]
 
 
-def _replay(name: str, schemes: Sequence[str]) -> dict[str, Any]:
-    joints = _truth(name, RAW).compared.tolist()
+def _replay(name: str, schemes: Sequence[str]) -> list[dict[str, Any]]:
+    """A clip for the player; none where nothing moves, is left out or is rebuilt: its rows say so."""
     motion, source = clip(name), credit(name)
-    return replay(motion, schemes, KEPT_PLAYED, title=name, source=source, joints=joints)
+    try:
+        joints = _truth(name, RAW).compared.tolist()
+        return [replay(motion, schemes, KEPT_PLAYED, title=name, source=source, joints=joints)]
+    except ValueError:
+        return []
 
 
 # -- the figure ---------------------------------------------------------------------------------

@@ -129,12 +129,12 @@ def test_code_is_kept_in_the_folder_of_its_sources_and_numbas_setting_is_left_al
 def test_the_same_file_in_two_folders_has_code_for_each(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A module that was loaded by path is known by it: the code of one checkout is no use in another."""
-    folder = tmp_path / "base" / "0123456789abcdef"
+    """A module that was loaded by path is named after it: the code of one checkout is no use in another."""
+    folder, source = tmp_path / "base" / "0123456789abcdef", "def twice(x):\n    return 2.0 * x\n"
     for name in ("checkout_one", "checkout_two"):
         module = types.ModuleType(name)
         monkeypatch.setitem(sys.modules, name, module)
-        exec(compile("def twice(x):\n    return 2.0 * x\n", __file__, "exec"), module.__dict__)
+        exec(compile(source, str(tmp_path / name / "doubling.py"), "exec"), module.__dict__)
         for expected in (False, True):
             function: Any = numba.njit(module.twice)
             function._cache = disk.cached_in(folder, module.twice)

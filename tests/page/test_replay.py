@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import dataclasses
 import json
 import shutil
 from pathlib import Path
@@ -186,6 +187,24 @@ def test_what_is_stored_shows_motion_and_the_course_of_errors(
         title="",
     )
     assert made["keyframes"][1] == every // stride
+
+
+def test_frames_alone_between_gaps_are_not_shown() -> None:
+    motion = loop(200)
+    stamps = motion.stamps + np.repeat([0.0, 5.0, 10.0], [100, 1, 99])
+    parted = dataclasses.replace(motion, stamps=stamps, max_gap=1.0)
+    made = replay(parted, ["slerp"], EVERY, title="")
+    truth = places(made, made["truth"])[:, 0]
+    rest = np.delete(motion.positions[:, 0], 100, axis=0)
+    np.testing.assert_allclose(truth, rest, atol=made["step"])
+
+
+def test_a_body_without_positions_turns_in_place() -> None:
+    motion = dataclasses.replace(loop(), positions=None)
+    made = replay(motion, ["slerp"], EVERY, title="")
+    truth = places(made, made["truth"])
+    assert np.abs(truth[:, 0]).max() <= made["step"]
+    assert np.ptp(truth[:, made["tips"][0]], axis=0).max() > 1.0
 
 
 def test_a_point_that_a_joint_moves_is_not_at_the_joint(walk: Motion) -> None:

@@ -95,9 +95,9 @@ def cached_in(folder: Path, function: Callable[..., Any]) -> caching.FunctionCac
             code = function.__code__
             self._lineno = code.co_firstlineno
             self._locator = _Folder(folder, self._lineno)
-            # Code names its module: one that was loaded from another folder cannot be imported here.
-            stem = Path(code.co_filename).stem
-            name = f"{function.__module__}.{stem}.{function.__qualname__}"
+            # Code names modules, which are named by their paths: another checkout's cannot be imported here.
+            place = hashlib.sha256(code.co_filename.encode()).hexdigest()[:8]
+            name = f"{Path(code.co_filename).stem}.{place}.{function.__qualname__}"
             self._filename_base = self.get_filename_base(name, "")
 
     class Cache(caching.FunctionCache):

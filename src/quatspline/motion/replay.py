@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quatspline import catalogue, quaternion
-from quatspline.inputs.arrays import FloatArray
+from quatspline.inputs.arrays import BoolArray, FloatArray
 from quatspline.motion.keeping import left_out, moving
 from quatspline.motion.motion import Motion
 from quatspline.motion.skeleton import ROOT
@@ -166,7 +166,16 @@ def _shown(motion: Motion, every: int) -> NDArray[np.intp]:
     points = len(WIRES) if motion.skeleton is None else size
     most = max(2, BUDGET // points)
     first = max(0, (count - most * stride) // 2) // every * every
-    return np.arange(first, count, stride)[:most]
+    frames = np.arange(first, count, stride)
+    return frames[~_alone(motion)[frames]][:most]
+
+
+def _alone(motion: Motion) -> BoolArray:
+    """Which frames (n,) are pieces of their own, through which there is no curve."""
+    edges = np.array(motion.edges)
+    alone = np.zeros(len(motion.quaternions), bool)
+    alone[edges[:-1][np.diff(edges) == 1]] = True
+    return alone
 
 
 def _stride(motion: Motion, every: int) -> int:
@@ -212,7 +221,8 @@ def wires(motion: Motion, size: float = 1.0) -> Wires:
     turns, places = motion.world()
     if motion.skeleton is None:
         arms = quaternion.rotate(turns[:, :1], size * WIRES)
-        return Wires(places[:, :1] + arms, WIRED, [0])
+        tip = 0 if motion.positions is not None else len(WIRES) - 1  # what stays tells nothing
+        return Wires(places[:, :1] + arms, WIRED, [tip])
     parents, ends = motion.skeleton.parents.tolist(), motion.skeleton.ends
     lines = [(parent, joint) for joint, parent in enumerate(parents) if parent != ROOT]
     tips = list(range(len(parents)))
