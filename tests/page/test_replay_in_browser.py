@@ -158,7 +158,7 @@ def test_of_all_joints_the_one_farthest_off_is_seen_from_near(page: Opened, walk
 
 
 def test_a_body_is_shown_with_its_path(page: Opened, steps: list[float]) -> None:
-    page.page.locator("#replay").get_by_label("Motion").select_option("1")
+    page.page.select_option("#replay select[name=scene]", "1")
     motion = loop()
     frame = 72
     page("t => quatspline.replay.seek(t)", float(motion.times[frame]))
