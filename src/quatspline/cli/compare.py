@@ -57,7 +57,7 @@ def command(
     """
     from quatspline.cli.played import played
     from quatspline.page import own_scene, write_page
-    from quatspline.page.sections import OWN
+    from quatspline.page.own_sections import OWN
 
     began = time.perf_counter()
     source, motion = motion, _kept(motion, every)

@@ -71,7 +71,7 @@ def command(
     from quatspline.cli.played import played
     from quatspline.motion import keeping
     from quatspline.page import write_page
-    from quatspline.page.sections import KEPT
+    from quatspline.page.own_sections import KEPT
 
     began = time.perf_counter()
     out = keeping.left_out(motion, every)
