@@ -10,7 +10,7 @@ from quatspline.findings.quotes import Ledger, Part, Quote, said
 from quatspline.instruments.summary import ALL
 from quatspline.trajectories.clips import CONTROLS, OWN
 
-TOPIC = "recorded"
+TOPIC = "reconstruct"
 
 SCHEMES = ("kim", "local-quintic", "squad", "quartic")
 CIRCULAR = ("circular-blend", "biarc")

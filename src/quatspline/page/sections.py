@@ -80,6 +80,12 @@ RANKINGS: dict[str, Ranking] = {
         "the keyframes that are needed over slerp's, geometric mean over the joints; less is better",
         {"clip": ALL},
     ),
+    "excursion": Ranking(
+        "wander_worst",
+        False,
+        "the largest angle from the keyframe during a hold ten times as long as the moves beside it; less is better",
+        {"data": "hold 10 : 1"},
+    ),
     "claims": Ranking("verdict", False, "the verdict: what departs comes first"),
 }
 
@@ -216,6 +222,12 @@ SECTIONS: tuple[Section, ...] = (
         "Fairness",
         "How much more a curve turns and accelerates than it must.",
         ("fairness",),
+    ),
+    Section(
+        "excursion",
+        "Excursion",
+        "How far curves overshoot their keyframes, and how far they wander where keyframes hold still.",
+        ("excursion",),
     ),
     Section(
         "robustness",
