@@ -172,6 +172,7 @@ def _compare(arguments: argparse.Namespace) -> int:
     with results.writing():
         results.guard((compare if body else joints).FILES, inputs=[arguments.keyframes])
         common = {"schemes": schemes, "results": results, "call": arguments.command}
+        common |= {"name": Path(arguments.keyframes).name}
         if not body:
             return joints.command(motion, every=arguments.keep, **common)
         return compare.command(motion, closed=arguments.closed, every=arguments.keep, **common)

@@ -9,7 +9,7 @@ from typing import Any
 
 import pandas as pd
 
-from quatspline.findings import decisions
+from quatspline.findings import decisions, recorded
 from quatspline.findings.quotes import Cell, Ledger, Part, Quote, Reader, Span, said
 from quatspline.instruments.summary import ALL
 
@@ -294,6 +294,7 @@ FINDINGS: tuple[tuple[str, Callable[[Ledger], tuple[Part, ...]]], ...] = (
     ("denoise", _unsmoothed),
     ("excursion", _wander),
     ("excursion", _overshoot),
+    *recorded.SENTENCES,
 )
 
 
