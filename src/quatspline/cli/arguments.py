@@ -33,6 +33,7 @@ def parser() -> argparse.ArgumentParser:
     _add_sample(commands)
     _add_reduce(commands)
     _add_info(commands)
+    _add_motions(commands)
     _add_report(commands)
     commands.add_parser("warmup", help="compile everything once, so that nothing waits later")
     return whole
@@ -103,6 +104,19 @@ def _add_reduce(commands: Any) -> None:
 def _add_info(commands: Any) -> None:
     info = commands.add_parser("info", help="what a motion file is: tracks, rate, gaps, noise")
     _add_file(info)
+
+
+def _add_motions(commands: Any) -> None:
+    motions = commands.add_parser(
+        "motions", help="fetch the recorded clips that experiments measure on"
+    )
+    motions.add_argument(
+        "folder", nargs="?", type=Path, default=Path("motions"), metavar="DIR", help="%(default)s"
+    )
+    mirror = "a folder on the web that has all files by name, instead of their sources"
+    motions.add_argument("--from", dest="mirror", metavar="ADDRESS", help=mirror)
+    replaced = "replace files of these names that hold something else"
+    motions.add_argument("--force", action="store_true", help=replaced)
 
 
 def _add_report(commands: Any) -> None:

@@ -1,4 +1,4 @@
-"""The command line: list, run, compare, sample, reduce, info, report, warmup.
+"""The command line: list, run, compare, sample, reduce, info, motions, report, warmup.
 
 Exit status: 0 done; 1 something unforeseen failed; 2 bad usage or bad input, told in one line on
 stderr; 130 interrupted.  Whatever is slow to import waits until a command needs it.
@@ -60,7 +60,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     except SystemExit as stop:  # argparse: help, version, bad usage
         return stop.code if isinstance(stop.code, int) else FAILED
     except KeyboardInterrupt:
-        hint = ": the same command goes on where it stopped" if given[:1] == ["run"] else ""
+        goes_on = given[:1] in (["run"], ["motions"])
+        hint = ": the same command goes on where it stopped" if goes_on else ""
         return _told(f"interrupted{hint}", INTERRUPTED)
     except BrokenPipeError:  # the reader has seen enough
         _give_up_stdout()
@@ -191,6 +192,12 @@ def _info(arguments: argparse.Namespace) -> int:
     return DONE
 
 
+def _motions(arguments: argparse.Namespace) -> int:
+    from quatspline.cli import motions
+
+    return motions.command(arguments.folder, mirror=arguments.mirror, force=arguments.force)
+
+
 def _warm_up(arguments: argparse.Namespace) -> int:
     from quatspline.runs.warmup import main
 
@@ -205,6 +212,7 @@ COMMANDS = {
     "sample": _sample,
     "reduce": _reduce,
     "info": _info,
+    "motions": _motions,
     "report": _report,
     "warmup": _warm_up,
 }
