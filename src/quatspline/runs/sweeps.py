@@ -27,7 +27,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from quatspline import catalogue
-from quatspline.kernels.engine import always_compiled
+from quatspline.engines.engine import always_compiled
 from quatspline.runs import experiment
 from quatspline.runs.experiment import Run
 from quatspline.runs.journal import Cell, Kept, key
