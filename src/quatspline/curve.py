@@ -103,6 +103,8 @@ class Curve(abc.ABC):
     """Conformance checks that a scheme does not pass, a peer run as published as a rule, each with its reason."""
     rescue: ClassVar[dict[str, Any]] = {}
     """Options that find the curve where the published iteration, the default, does not converge."""
+    rough: ClassVar[dict[str, Any]] = {}
+    """Options of nearly the same curve for less time, where very many are tried, as in a reduction."""
     batched: ClassVar[bool] = False
     """Whether `_fit` and the evaluation take all tracks at once."""
 
