@@ -95,7 +95,8 @@ def cached_in(folder: Path, function: Callable[..., Any]) -> caching.FunctionCac
             code = function.__code__
             self._lineno = code.co_firstlineno
             self._locator = _Folder(folder, self._lineno)
-            name = f"{Path(code.co_filename).stem}.{function.__qualname__}"
+            # By module: code names the one that it is of, which of a file loaded by path bears its place.
+            name = f"{function.__module__}.{function.__qualname__}"
             self._filename_base = self.get_filename_base(name, "")
 
     class Cache(caching.FunctionCache):
