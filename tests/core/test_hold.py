@@ -81,5 +81,5 @@ def test_closed_curves_wrap_instead() -> None:
 
 @pytest.mark.parametrize("hold", [None, 2, "yes"])
 def test_other_values_are_refused(hold: object) -> None:
-    with pytest.raises(ValueError, match="hold=.*expected True or False"):
+    with pytest.raises(ValueError, match=r"hold=.*expected True or False"):
         qs.build("slerp", None, walk(3, 40.0, seed=0), hold=hold)

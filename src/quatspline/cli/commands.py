@@ -1,4 +1,4 @@
-"""The command line: list, run, compare, sample, reduce, info, motions, report, warmup.
+"""The command line: list, options, run, compare, sample, reduce, info, motions, report, warmup.
 
 Exit status: 0 done; 1 something unforeseen failed; 2 bad usage or bad input, told in one line on
 stderr; 130 interrupted.  Whatever is slow to import waits until a command needs it.
@@ -126,6 +126,12 @@ def _yes(claim: bool) -> str:
     return "yes" if claim else "no"
 
 
+def _options(arguments: argparse.Namespace) -> int:
+    from quatspline.cli import options
+
+    return options.command(arguments.scheme)
+
+
 def _run(arguments: argparse.Namespace) -> int:
     from quatspline.cli import running, words
 
@@ -145,11 +151,12 @@ def _run(arguments: argparse.Namespace) -> int:
 
 
 def _compare(arguments: argparse.Namespace) -> int:
-    from quatspline.cli import compare, joints, recorded, words
+    from quatspline.cli import compare, joints, options, recorded, words
     from quatspline.runs.results import Results
 
     # A wrong name is told before a long file is read.
     arguments.keyframes, schemes = words.of_compare(arguments.keyframes, arguments.schemes)
+    given = options.of_schemes(schemes, arguments.options)
     motion = recorded.motion_of(arguments)
     body = len(motion.tracks) == 1
     if not body and arguments.keep is None:
@@ -160,6 +167,7 @@ def _compare(arguments: argparse.Namespace) -> int:
     with results.writing():
         results.guard((compare if body else joints).FILES, inputs=[arguments.keyframes])
         common = {"schemes": schemes, "results": results, "call": arguments.command}
+        common["options"] = given
         if not body:
             return joints.command(motion, every=arguments.keep, **common)
         return compare.command(motion, closed=arguments.closed, every=arguments.keep, **common)
@@ -207,6 +215,7 @@ def _warm_up(arguments: argparse.Namespace) -> int:
 
 COMMANDS = {
     "list": _list,
+    "options": _options,
     "run": _run,
     "compare": _compare,
     "sample": _sample,

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from quatspline.system.stdout import say
 
@@ -38,14 +38,17 @@ def command(
     schemes: Sequence[str] | None,
     every: int,
     results: Results,
+    options: Mapping[str, Any],
     call: Sequence[str],
 ) -> int:
     """Serve ``quatspline compare --keep`` on a motion of several tracks: a table in a folder."""
     import pandas as pd
 
     from quatspline import catalogue
+    from quatspline.comparing import told
     from quatspline.instruments.trials import attempted
     from quatspline.motion import keeping
+    from quatspline.options import among
     from quatspline.runs.experiment import Run
     from quatspline.timing.own_keyframes import left_out
 
@@ -55,13 +58,14 @@ def command(
     rows = []
     for name in Run(quick=True).progress(list(schemes or catalogue.schemes()), label="compare"):
         reason = left_out(name, work) if schemes is None else None
-        measure = partial(_row, motion, name, every)
+        given = among(catalogue.scheme(name), options)
+        measure = partial(_row, motion, name, every, given)
         row = attempted(measure)[0] if reason is None else {"failure": reason}
         rows.append({"scheme": name} | row)
     table = pd.DataFrame(rows).reindex(columns=COLUMNS)
     table = table.sort_values(["rms_median", "scheme"], na_position="last", ignore_index=True)
     title = TITLE.format(every=every, count=int(out.sum()))
-    results.table(NAME, table, title=title, note=NOTE, formats=FORMATS, keys=[])
+    results.table(NAME, table, title=title, note=NOTE + told(options), formats=FORMATS, keys=[])
     results.record(
         NAME, {"title": title, "size": f"{len(out)} frames", "seed": None, "seconds": None}
     )
@@ -70,10 +74,12 @@ def command(
     return 0
 
 
-def _row(motion: Motion, name: str, every: int) -> list[dict[str, object]]:
+def _row(
+    motion: Motion, name: str, every: int, given: Mapping[str, Any]
+) -> list[dict[str, object]]:
     from quatspline.motion import keeping
 
-    return [keeping.row(motion, name, every)]
+    return [keeping.row(motion, name, every, given)]
 
 
 def _lines(table: pd.DataFrame) -> list[str]:
