@@ -9,7 +9,7 @@ from typing import Any
 
 import pandas as pd
 
-from quatspline.findings import decisions
+from quatspline.findings import decisions, recorded
 from quatspline.findings.quotes import Cell, Ledger, Part, Quote, Reader, Span, said
 
 
@@ -183,6 +183,7 @@ FINDINGS: tuple[tuple[str, Callable[[Ledger], tuple[Part, ...]]], ...] = (
     ("continuity", _cubic_fall),
     ("accuracy", _orders),
     ("fairness", _torque),
+    *recorded.FINDINGS,
 )
 
 
