@@ -116,8 +116,9 @@ def draw(table: pd.DataFrame) -> Figure:
             "names_shown": ax is axes[0, 0],
             "colours": "RdBu_r",
             "ticks": TICKS,
+            "under": list(axes[0]) if ax is axes[0, -1] else [],
         }
-        log_heat(ax, shown, "rms over slerp's", (1 / SPAN, SPAN), **looks)
+        log_heat(ax, shown, "rms angle over slerp's", (1 / SPAN, SPAN), **looks)
         label_cells(ax, shown.map(_text), shown.gt(DARK) | shown.lt(1 / DARK))
         ax.set(title=_title(name, each), xlabel="every ... frame kept")
     style.letters(axes[0])
