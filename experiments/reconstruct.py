@@ -160,11 +160,15 @@ def _title(name: str, filter: str) -> str:
     return "as recorded" if filter == RAW else f"below {filter}"
 
 
+def _count(clips: list[str]) -> str:
+    return f"{len(clips)} clip{'' if len(clips) == 1 else 's'}"
+
+
 def caption(table: pd.DataFrame) -> str:
     clips = sorted(set(table["clip"]) - {ALL, *CONTROLS})
     made = " No recorded clip was given: this is the project's own walk." if clips == [OWN] else ""
     return (
         f"Rms angle of joints at the frames left out when every 2nd, 4th, ... frame is kept, over slerp's, geometric "
-        f"mean ({len(clips)} clips): below 1 (blue) is better than slerp. Recordings as they are, low-pass filtered, "
+        f"mean ({_count(clips)}): below 1 (blue) is better than slerp. Recordings as they are, low-pass filtered, "
         f"and two controls, motion without noise and noise without motion.{made}"
     )

@@ -127,11 +127,15 @@ def _lines(ax: Any, rows: pd.DataFrame, column: str = "share") -> None:
             ax.plot(own.index, own, label=name, **style.scheme_style(name))
 
 
+def _count(clips: list[str]) -> str:
+    return f"{len(clips)} clip{'' if len(clips) == 1 else 's'}"
+
+
 def caption(table: pd.DataFrame) -> str:
     clips = sorted(set(table["clip"]) - {ALL})
     made = " No recorded clip was given: this is the project's own walk." if clips == [OWN] else ""
     return (
         "Keyframes that greedy reduction keeps of recorded motion against the error that is allowed at every frame, "
-        f"joint by joint ({len(clips)} clips): their share of all frames, and their number over that of slerp, "
+        f"joint by joint ({_count(clips)}): their share of all frames, and their number over that of slerp, "
         f"geometric mean over joints. Recordings as they are, and low-pass filtered.{made}"
     )

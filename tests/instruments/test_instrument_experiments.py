@@ -27,6 +27,7 @@ COLUMNS = {
         "claimed_k",
         "least_key_speed",
     },
+    "denoise": {"clip", "every", "noise_degrees", "over_slerp", "told_degrees", "omega"},
     "edge-cases": {"case", "result", "checked", "deviation", "failure"},
     "fairness": {
         "data",
