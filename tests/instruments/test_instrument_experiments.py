@@ -29,6 +29,16 @@ COLUMNS = {
     },
     "denoise": {"clip", "every", "noise_degrees", "over_slerp", "told_degrees", "omega"},
     "edge-cases": {"case", "result", "checked", "deviation", "failure"},
+    "excursion": {
+        "data",
+        "segments",
+        "off_median",
+        "over_worst",
+        "back_q95",
+        "overshot",
+        "wander_worst",
+        "failure",
+    },
     "fairness": {
         "data",
         "sets",

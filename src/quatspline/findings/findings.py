@@ -218,6 +218,41 @@ def _unsmoothed(cell: Ledger) -> tuple[Part, ...]:
     )
 
 
+EXCURSIVE = ("squad", "kim", "quartic", "local-quintic", "monotone-quintic")
+
+
+def _wander(cell: Ledger) -> tuple[Part, ...]:
+    where = {"data": "hold 10 : 1"}
+    worst = [cell("excursion", "wander_worst", scheme=name, **where) for name in EXCURSIVE]
+    return said(
+        "Where two keyframes are the same and a body should hold still, beside moves (sets '{data}'), curves wander "
+        f"from the keyframe by up to, in degrees: {_listed(EXCURSIVE, '.0f')}.",
+        data=cell("excursion", "data", scheme=EXCURSIVE[0], **where),
+        **_numbered(worst),
+    )
+
+
+def _overshoot(cell: Ledger) -> tuple[Part, ...]:
+    def worst(data: str) -> Span:
+        found = tuple(cell("excursion", "over_worst", scheme=name, data=data) for name in others)
+        return Quote(found, "least"), Quote(found, "most")
+
+    own, others = EXCURSIVE[-1], EXCURSIVE[:-1]
+    generic, axis = (
+        cell("excursion", "over_worst", scheme=own, data=x) for x in ("generic", "one axis")
+    )
+    return said(
+        f"The worst overshoot of a step, as a share of it, is {{generic:.2g}} for {_and(others)} on generic keyframes "
+        f"and {{axis:.2g}} on keyframes about one axis; for {own} it is {{own_generic:.1g}} and {{own_axis:.1g}}. Its "
+        "torque energy over the least possible is {torque:.3f} in the median.",
+        generic=worst("generic"),
+        axis=worst("one axis"),
+        own_generic=generic,
+        own_axis=axis,
+        torque=cell("fairness", "median", scheme=own, data="committed"),
+    )
+
+
 FINDINGS: tuple[tuple[str, Callable[[Ledger], tuple[Part, ...]]], ...] = (
     ("reproduction", _iterations),
     ("protocol", _protocol),
@@ -229,12 +264,18 @@ FINDINGS: tuple[tuple[str, Callable[[Ledger], tuple[Part, ...]]], ...] = (
     *recorded.FINDINGS,
     ("denoise", _smoothing),
     ("denoise", _unsmoothed),
+    ("excursion", _wander),
+    ("excursion", _overshoot),
 )
 
 
 def _listed(names: Sequence[str], spec: str) -> str:
     """A template that names quantities v0, v1, ... after their schemes."""
     return ", ".join(f"{name} {{v{i}:{spec}}}" for i, name in enumerate(names))
+
+
+def _and(names: Sequence[str]) -> str:
+    return f"{', '.join(names[:-1])} and {names[-1]}"
 
 
 def _numbered(cells: Sequence[Cell]) -> dict[str, Cell]:
