@@ -9,8 +9,6 @@ from quatspline.findings.quotes import Cell, Ledger, Part, said
 from quatspline.instruments.summary import ALL
 from quatspline.trajectories.clips import CONTROLS, OWN
 
-TOPIC = "recorded motion"
-
 TABLE, REDUCE = "reconstruct", "reduce"
 
 KEPT, ERROR = 4, 0.5
@@ -115,6 +113,10 @@ def _keyframes(cell: Ledger) -> tuple[Part, ...]:
     )
 
 
-FINDINGS: tuple[tuple[str, Callable[[Ledger], tuple[Part, ...]]], ...] = tuple(
-    (TOPIC, sentence) for sentence in (_ranking, _noise, _hinges, _euler, _keyframes)
+FINDINGS: tuple[tuple[str, Callable[[Ledger], tuple[Part, ...]]], ...] = (
+    (TABLE, _ranking),
+    (TABLE, _noise),
+    (TABLE, _hinges),
+    (TABLE, _euler),
+    (REDUCE, _keyframes),
 )
