@@ -20,7 +20,7 @@ def orientation(sheet, n):
     """Order 0, of functions whose values are of unit length."""
     s = rows_of(sheet)
     for j in range(n):
-        put_quat(s[RESULT:, j], 0, FUNCTION(s[CONSTANTS:RESULT, j], s[0, j]))
+        put_quat(s[RESULT:, j], 0, FUNCTION(s[CONSTANTS:, j], s[0, j]))
 
 
 def unit_orientation(sheet, n):
@@ -28,14 +28,14 @@ def unit_orientation(sheet, n):
     s = rows_of(sheet)
     rough = 0
     for j in range(n):
-        q = FUNCTION(s[CONSTANTS:RESULT, j], s[0, j])
+        q = FUNCTION(s[CONSTANTS:, j], s[0, j])
         # off by e, 1.5 - |q|^2 / 2 restores the length to 3/2 e^2, without a root and a division
         fine = abs(q @ q - 1.0) <= ROUGH
         put_quat(s[RESULT:, j], 0, (1.5 - 0.5 * (q @ q) if fine else 1.0) * q)
         rough += 0 if fine else 1
     if rough > 0:
         for j in range(n):
-            spare = SPARE(s[CONSTANTS:RESULT, j], s[0, j])
+            spare = SPARE(s[CONSTANTS:, j], s[0, j])
             put_quat(s[RESULT:, j], 0, restored(quat_at(s[RESULT:, j], 0), spare))
 
 
@@ -43,7 +43,7 @@ def velocity(sheet, n):
     """Order 1."""
     s = rows_of(sheet)
     for j in range(COUNT(n)):
-        put_vec(s[RESULT:, j], 0, (2.0 * s[1, j]) * FUNCTION(s[CONSTANTS:RESULT, j], s[0, j]))
+        put_vec(s[RESULT:, j], 0, (2.0 * s[1, j]) * FUNCTION(s[CONSTANTS:, j], s[0, j]))
 
 
 def acceleration(sheet, n):
@@ -51,4 +51,4 @@ def acceleration(sheet, n):
     s = rows_of(sheet)
     for j in range(COUNT(n)):
         rate = 2.0 * s[1, j] * s[1, j]
-        put_vec(s[RESULT:, j], 0, rate * FUNCTION(s[CONSTANTS:RESULT, j], s[0, j]))
+        put_vec(s[RESULT:, j], 0, rate * FUNCTION(s[CONSTANTS:, j], s[0, j]))
