@@ -8,10 +8,10 @@ import numpy as np
 
 from quatspline.kernels.family import family
 from quatspline.kernels.jit import REACH, compiled, fit_kernel, inlined
-from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.scalars import TINY
 from quatspline.kernels.values import keyframe, put_quat, quat_at, vec
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.segments import SegmentCurve
 
 START, RISE, G0, G1, SIZE = 0, 4, 8, 12, 16

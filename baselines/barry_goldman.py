@@ -6,9 +6,9 @@ from quatspline.families.arcs import SIZE as ARC
 from quatspline.families.arcs import set_arc
 from quatspline.families.nested import TRIANGLE, set_parameter
 from quatspline.kernels.jit import REACH, fit_kernel, inlined
-from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import keyframe, restored, slerp
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.segments import SegmentCurve
 
 

@@ -9,7 +9,6 @@ import numpy as np
 from quatspline.families.circles import BIARC, FIRST, SECOND, SPLIT, set_circle
 from quatspline.fitting.tangents import CHART, chart_velocities, step
 from quatspline.kernels.jit import REACH, compiled, fit_kernel
-from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import (
     Vec,
     keyframe,
@@ -21,6 +20,7 @@ from quatspline.kernels.values import (
     vec_at,
 )
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.segments import SegmentCurve
 
 STILL = 1e-14

@@ -9,8 +9,8 @@ import numpy as np
 from quatspline.families.nested import TRIANGLE
 from quatspline.fitting.bezier import FIT
 from quatspline.fitting.tangents import CHART, SECANT
-from quatspline.kernels.operations import Operations, Per
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.segments import SegmentCurve
 
 

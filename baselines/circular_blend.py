@@ -9,9 +9,9 @@ import numpy as np
 
 from quatspline.families.circles import BLEND, FIRST, SECOND, SPLIT, set_circle
 from quatspline.kernels.jit import REACH, compiled, fit_kernel, inlined
-from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import keyframe, norm, unit
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.segments import SegmentCurve
 
 SAME = 1e-12

@@ -26,9 +26,9 @@ from quatspline.kernels.jit import (
     rows_of,
     sample_kernel,
 )
-from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import keyframe, put_quat, put_vec
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.options import AtMost, Count
 from quatspline.segments import SegmentCurve
 

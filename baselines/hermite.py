@@ -10,9 +10,9 @@ import numpy as np
 from quatspline.families.cumulative import CUMULATIVE, set_base, set_factor
 from quatspline.fitting.tangents import CHART, SECANT, chart_velocities
 from quatspline.kernels.jit import REACH, fit_kernel
-from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import exp, keyframe, log, vec_at
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.segments import SegmentCurve
 
 B1 = (0.0, 3.0, -3.0, 1.0, 0.0, 0.0)

@@ -10,9 +10,9 @@ import numpy as np
 
 from quatspline.families.arcs import ARC, SIZE, set_arc
 from quatspline.kernels.jit import REACH, fit_kernel
-from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import exp, keyframe, log, norm, unit
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.options import AtMost, Count
 from quatspline.segments import SegmentCurve
 

@@ -33,7 +33,6 @@ from quatspline.fitting.bspline import (
 from quatspline.fitting.bspline_newton import copy, descend, moved, newton, settle
 from quatspline.inputs.arrays import at, real_array, refuse_infinite
 from quatspline.kernels.jit import CHANGE, ITERATIONS, REACH, RESIDUAL, compiled, fit_kernel
-from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.quick import exp, log
 from quatspline.kernels.values import (
     keyframe,
@@ -45,6 +44,7 @@ from quatspline.kernels.values import (
     vec_column,
 )
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.options import LARGEST, Count, OnFailure, Positive, Stop
 from quatspline.quaternion import FloatArray
 from quatspline.segments import SegmentCurve

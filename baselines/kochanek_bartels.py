@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 from quatspline.families.nested import TRIANGLE
 from quatspline.fitting.bezier import FIT
 from quatspline.fitting.tangents import CHART, SECANT
-from quatspline.kernels.operations import Operations, Per
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.options import per_keyframe
 from quatspline.quaternion import FloatArray
 from quatspline.segments import SegmentCurve

@@ -8,8 +8,8 @@ import numpy as np
 
 from quatspline import quaternion
 from quatspline.families.rotation_vector import PHI, Q0, ROTATION_VECTOR
-from quatspline.kernels.operations import Operations, Per
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.quaternion import FloatArray
 from quatspline.segments import SegmentCurve
 

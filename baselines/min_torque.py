@@ -6,12 +6,12 @@ from typing import Annotated
 
 import numpy as np
 
+from quatspline.engines import engine
 from quatspline.families.rotation_vector import ROTATION_VECTOR
 from quatspline.fitting.least_torque import minimise
-from quatspline.kernels import engine
 from quatspline.kernels.jit import REACH
-from quatspline.kernels.operations import Operations, Per
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.options import AtMost, Count, OnFailure, Positive
 from quatspline.proposed.local_quintic import LocalQuinticSpline
 from quatspline.segments import SegmentCurve

@@ -30,7 +30,6 @@ import numpy as np
 from quatspline import quaternion
 from quatspline.kernels.family import Family, family
 from quatspline.kernels.jit import compiled, inlined
-from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import (
     Mat,
     Quat,
@@ -44,6 +43,7 @@ from quatspline.kernels.values import (
     vec_at,
 )
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.quaternion import FloatArray
 from quatspline.segments import SegmentCurve
 from quatspline.system.quiet import quiet

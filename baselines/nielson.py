@@ -21,9 +21,9 @@ from quatspline.kernels.jit import (
     fit_kernel,
     inlined,
 )
-from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import arc, keyframe, norm, put_quat, quat_at, slerp
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.options import Count, OnFailure, Positive, Stop, per_keyframe
 from quatspline.segments import SegmentCurve
 

@@ -11,9 +11,9 @@ from quatspline.families.chords import (
 )
 from quatspline.kernels.family import family
 from quatspline.kernels.jit import REACH, fit_kernel, inlined
-from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import keyframe
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.segments import SegmentCurve
 
 

@@ -10,9 +10,9 @@ from quatspline.families.nested import TRIANGLE
 from quatspline.fitting.bezier import set_controls
 from quatspline.fitting.tangents import CHART, SECANT, end_velocity
 from quatspline.kernels.jit import REACH, compiled, fit_kernel, inlined
-from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import exp, keyframe, norm, put_quat, restored, slerp, unit
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.segments import SegmentCurve
 
 STATIONARY = 2.0

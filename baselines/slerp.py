@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from quatspline.families.arcs import ARC, set_arc
 from quatspline.kernels.jit import REACH, fit_kernel
-from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import keyframe
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.segments import SegmentCurve
 
 

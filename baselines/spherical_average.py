@@ -28,9 +28,9 @@ from quatspline.kernels.jit import (
     fit_kernel,
     inlined,
 )
-from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import exp, keyframe, log, norm, put_quat, quat_at, unit, vec_at
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.options import Count, OnFailure, Positive, Stop
 from quatspline.segments import SegmentCurve
 

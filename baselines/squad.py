@@ -11,9 +11,9 @@ from quatspline.families.arcs import set_arc
 from quatspline.families.nested import SQUAD
 from quatspline.fitting.tangents import CHART, SECANT, chart_velocities, step
 from quatspline.kernels.jit import REACH, compiled, fit_kernel
-from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import exp, keyframe, log, put_vec, vec_at
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.segments import SegmentCurve
 
 TWO_A, SINGLE_A, TEXTBOOK = 0.0, 1.0, 2.0

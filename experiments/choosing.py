@@ -12,7 +12,7 @@ from quatspline.claims.claim import DEPARTS, UNDECIDED
 from quatspline.figures import style
 from quatspline.findings import decisions
 from quatspline.findings.quotes import Reader
-from quatspline.kernels.operations import UNSTATED, Per
+from quatspline.operations import UNSTATED, Per
 from quatspline.quaternion import FloatArray
 from quatspline.runs.experiment import FULL, QUICK, Run
 from quatspline.timing.operations import of_a_keyframe, of_a_sample

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from quatspline.catalogue import build, scheme, schemes
     from quatspline.comparing import compare
     from quatspline.curve import Curve
-    from quatspline.kernels.operations import Operations, Per
     from quatspline.keyframes import Keyframes
     from quatspline.motion import Motion, MotionFileError, read_motion, write_motion
+    from quatspline.operations import Operations, Per
     from quatspline.proposed.quartic import QuarticSpline
     from quatspline.solving import ConvergenceError, SolveReport
 
@@ -30,8 +30,8 @@ _HOMES = {
     "Keyframes": "quatspline.keyframes",
     "Motion": "quatspline.motion",
     "MotionFileError": "quatspline.motion",
-    "Operations": "quatspline.kernels.operations",
-    "Per": "quatspline.kernels.operations",
+    "Operations": "quatspline.operations",
+    "Per": "quatspline.operations",
     "QuarticSpline": "quatspline.proposed.quartic",
     "build": "quatspline.catalogue",
     "compare": "quatspline.comparing",

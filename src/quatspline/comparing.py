@@ -14,11 +14,11 @@ from quatspline import keyframes as kf
 from quatspline import quaternion
 from quatspline.catalogue import scheme, schemes
 from quatspline.curve import Curve
+from quatspline.engines.engine import always_compiled
 from quatspline.instruments.continuity import jumps, measured_continuity, rounding, speeds
 from quatspline.instruments.fairness import fairness
 from quatspline.instruments.rescue import solved
 from quatspline.instruments.trials import Row, attempted, facts
-from quatspline.kernels.engine import always_compiled
 from quatspline.keyframes import Keyframes
 from quatspline.options import among
 from quatspline.runs.experiment import Run

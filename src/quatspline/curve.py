@@ -23,8 +23,8 @@ from quatspline.inputs.arrays import (
     checked_threads,
 )
 from quatspline.inputs.domain import Domain
-from quatspline.kernels.operations import UNSTATED, Operations
 from quatspline.log_curve import log_curve
+from quatspline.operations import UNSTATED, Operations
 from quatspline.solving import SolveReport
 
 if TYPE_CHECKING:

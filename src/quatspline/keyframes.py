@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from quatspline.engines import engine
 from quatspline.inputs import stamps
 from quatspline.inputs.arrays import IntArray, at, float_array, refuse_infinite, switch
 from quatspline.inputs.orientations import directions, explain_norms, orientations
 from quatspline.inputs.spacings import DIGITS, LONGEST, SHORTEST, explain_times
-from quatspline.kernels import engine
 from quatspline.kernels.jit import compiled
 from quatspline.quaternion import ANTIPODAL, FLIP, FloatArray
 

@@ -16,8 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from quatspline.engines import engine
 from quatspline.inputs.arrays import FloatArray
-from quatspline.kernels import engine, jacobians, values
+from quatspline.kernels import jacobians, values
 from quatspline.kernels.jit import compiled, inlined
 from quatspline.kernels.scalars import TINY
 from quatspline.kernels.values import (

@@ -2,9 +2,9 @@
 
 A scheme of this kind supplies a fit kernel (keyframes -> constants) or computes the constants
 itself, and names the family whose functions evaluate them.  What is compiled, one driver
-(`kernels.driver`) does for all: it finds the segments, wraps closed curves, refuses times
+(`engines.driver`) does for all: it finds the segments, wraps closed curves, refuses times
 outside the domain, and hands blocks of samples to the kernels, component first.  Before that,
-`kernels.plain` does the same one sample at a time (see `kernels.engine`).
+`engines.plain` does the same one sample at a time (see `engines.engine`).
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from typing import Any, Literal
 import numpy as np
 
 from quatspline.curve import Curve
+from quatspline.engines import engine, plain
 from quatspline.inputs.arrays import BoolArray, FloatArray
-from quatspline.kernels import engine, plain
 from quatspline.kernels.family import Family
 from quatspline.kernels.jit import CHANGE, ITERATIONS, REACH, RESIDUAL, UNREPORTED, Kernel
 from quatspline.kernels.scalars import NEAR

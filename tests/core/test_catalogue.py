@@ -16,7 +16,7 @@ import quatspline as qs
 from processes import environment, python
 from quatspline import catalogue
 from quatspline.curve import Curve
-from quatspline.kernels import engine
+from quatspline.engines import engine
 from tools import new_scheme
 from walks import walk
 

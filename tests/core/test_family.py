@@ -9,12 +9,12 @@ import pytest
 
 import quatspline as qs
 from quatspline.curve import Curve
+from quatspline.engines import engine
 from quatspline.families.arcs import ANGLE, ARC, along, set_arc
 from quatspline.families.arcs import SIZE as ARC_SIZE
 from quatspline.families.circles import biarc, biarc_jet, blend, blend_jet
 from quatspline.families.means import point as mean
 from quatspline.families.nested import squad, squad_jet, triangle, triangle_jet
-from quatspline.kernels import engine
 from quatspline.kernels.family import called, family
 from quatspline.kernels.jit import CONSTANTS, REACH, ROWS, fit_kernel, inlined
 from quatspline.kernels.scalars import sincos

@@ -5,13 +5,14 @@ from __future__ import annotations
 import copy
 import importlib
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import quatspline as qs
 from processes import python
-from quatspline.system.moved import MOVED, today
+from quatspline.system.moved import LEFT, MOVED, today
 from walks import walk
 
 
@@ -37,6 +38,23 @@ def test_modules_of_a_moved_package_are_found_once() -> None:
         old = importlib.import_module("quatspline.trajectories.files.npz")
     assert old is importlib.import_module("quatspline.motion.files.npz")
     assert today("quatspline.report.page.document") == "quatspline.page.document"
+
+
+@pytest.mark.parametrize("old", LEFT)
+def test_a_module_that_left_the_package_is_told_where_it_is(old: str) -> None:
+    with pytest.raises(ModuleNotFoundError, match=LEFT[old]):
+        importlib.import_module(f"quatspline.{old}")
+    assert (Path(__file__).parents[2] / LEFT[old]).is_file()
+
+
+def test_what_one_module_of_inputs_held_is_in_its_arrays() -> None:
+    inputs = importlib.import_module("quatspline.inputs")
+    with pytest.warns(DeprecationWarning, match=r"quatspline\.inputs\.arrays\.float_array"):
+        assert inputs.float_array is importlib.import_module("quatspline.inputs.arrays").float_array
+    with pytest.raises(AttributeError, match="nothing"):
+        _ = inputs.nothing
+    with pytest.raises(ImportError):
+        importlib.import_module("quatspline.inputs.float_array")
 
 
 def test_old_names_leave_the_public_functions_alone() -> None:

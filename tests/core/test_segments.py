@@ -9,8 +9,8 @@ import pytest
 
 import quatspline as qs
 from quatspline.curve import Curve
-from quatspline.kernels.driver import BATCH
-from quatspline.kernels.locating import LONG
+from quatspline.engines.driver import BATCH
+from quatspline.engines.locating import LONG
 from quatspline.segments import CHUNK, LAZY, SegmentCurve
 from walks import apart, applies, walk
 

@@ -21,7 +21,8 @@ from numba import config
 import quatspline as qs
 from processes import STUCK, environment, python
 from quatspline import catalogue
-from quatspline.kernels import compiler, jit
+from quatspline.engines import compiler
+from quatspline.kernels import jit
 from quatspline.system.quiet import quiet
 
 TRIAL = Path(__file__).parents[1] / "robustness" / "threads.py"
@@ -325,7 +326,7 @@ thread.join(60)
         ),
         (
             "from numba.core.compiler_lock import global_compiler_lock as lock\n"
-            "import quatspline.kernels.compiler\n"
+            "import quatspline.engines.compiler\n"
             "def compiling():\n    with lock:\n        gate.entered.set(); gate.go.wait(60)\n"
             "thread = threading.Thread(target=compiling)\n"
             "thread.start(); assert gate.entered.wait(60)",

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from quatspline import quaternion
-from quatspline.kernels import engine, jacobians, quick, values
+from quatspline.engines import engine
+from quatspline.kernels import jacobians, quick, values
 from quatspline.kernels.jit import compiled
 from quatspline.kernels.values import Mat, Quat, Vec
 

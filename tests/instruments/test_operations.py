@@ -14,7 +14,7 @@ import pytest
 
 from quatspline.catalogue import load, scheme, shipped
 from quatspline.curve import Curve
-from quatspline.kernels.operations import Operations, Per
+from quatspline.operations import Operations, Per
 from quatspline.options import among
 from quatspline.timing.operations import executed, iterations, per_keyframe, per_sample
 from quatspline.trajectories.paper import CASES, SOLVE

@@ -19,7 +19,7 @@ import quatspline as qs
 from quatspline import quaternion
 from quatspline.catalogue import FOLDERS, found
 from quatspline.curve import Curve
-from quatspline.kernels import engine
+from quatspline.engines import engine
 from quatspline.segments import SegmentCurve
 from tools.new_scheme import COMPILED, new_scheme
 from tools.readme import DOCS, PICTURES, QUOTING, ROOT, derivations, pages_block

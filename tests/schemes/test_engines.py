@@ -11,8 +11,8 @@ import pytest
 import quatspline as qs
 from processes import environment
 from quatspline.comparing import compare
+from quatspline.engines import engine, plain
 from quatspline.families.arcs import SIZE, acceleration, near_point, velocity
-from quatspline.kernels import engine, plain
 from quatspline.kernels.family import family as made_family
 from quatspline.kernels.jit import compiled, fit_kernel
 from quatspline.segments import SegmentCurve

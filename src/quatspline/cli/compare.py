@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from quatspline import comparing
+from quatspline.engines.engine import always_compiled
 from quatspline.inputs.stamps import elapsed
-from quatspline.kernels.engine import always_compiled
 from quatspline.system.stdout import say
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from quatspline import catalogue
-from quatspline.kernels.engine import always_compiled
+from quatspline.engines.engine import always_compiled
 from quatspline.runs import sweeps
 from quatspline.runs.experiment import (
     Experiment,

@@ -1,1 +1,1 @@
-"""Compilation, quaternions as values, and the driver that evaluates segments."""
+"""What is run: functions of one sample on quaternions as values, and how they are marked."""

@@ -15,6 +15,9 @@ import functools
 from collections.abc import Callable
 from typing import Any, Literal
 
+ROOMS = ("engines", "kernels", "families", "fitting", "proposed")
+"""Where compiled code stands, besides the file of a scheme."""
+
 BLOCK = 48
 """Samples in a block: its sheet stays within the first-level cache, and rows no power of two apart
 do not compete for the same places there."""

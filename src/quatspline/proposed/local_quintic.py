@@ -9,9 +9,9 @@ import numpy as np
 from quatspline.families.rotation_vector import ROTATION_VECTOR, set_end_rates
 from quatspline.fitting.local_rates import chords, continued, local_rates
 from quatspline.kernels.jit import REACH, fit_kernel, inlined
-from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import put_vec, quat_at, vec_at
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.options import AtMost, Count
 from quatspline.segments import SegmentCurve
 

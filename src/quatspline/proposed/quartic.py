@@ -6,8 +6,8 @@ import numpy as np
 
 from quatspline.families.cumulative import MIDDLE
 from quatspline.fitting.four_keyframes import FIT
-from quatspline.kernels.operations import Operations, Per
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.segments import SegmentCurve
 
 

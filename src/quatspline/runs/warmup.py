@@ -11,7 +11,7 @@ import numpy as np
 
 from quatspline import quaternion
 from quatspline.catalogue import found, scheme, schemes
-from quatspline.kernels.engine import always_compiled, mark_warm
+from quatspline.engines.engine import always_compiled, mark_warm
 from quatspline.segments import SegmentCurve
 
 

@@ -21,7 +21,7 @@ MOVED = {
     "families.bspline": "fitting.bspline",
     "families.bspline_newton": "fitting.bspline_newton",
     "families.bspline_rows": "fitting.bspline_rows",
-    "families.driver": "kernels.driver",
+    "families.driver": "engines.driver",
     "families.four_keyframes": "fitting.four_keyframes",
     "families.least_torque": "fitting.least_torque",
     "families.local_rates": "fitting.local_rates",
@@ -43,6 +43,7 @@ MOVED = {
     "instruments.speed": "timing.speed",
     "instruments.timing": "timing.interleaved",
     "journal": "runs.journal",
+    "kernels.operations": "operations",
     "loading": "system.loading",
     "locking": "system.locking",
     "logcurve": "log_curve",
@@ -77,6 +78,13 @@ MOVED = {
     "words": "cli.words",
 }
 
+LEFT = {
+    "report.readme": "tools/readme.py",
+    "scaffold": "tools/new_scheme.py",
+    "trajectories.search": "tools/paper_search.py",
+}
+"""Modules that serve the repository only, and where they are there."""
+
 
 class _Moved(MetaPathFinder, Loader):
     """Finds a module under its old name, and puts the module of today in its place."""
@@ -87,6 +95,10 @@ class _Moved(MetaPathFinder, Loader):
         """Of a moved module, or of the package that is gone with all its modules."""
         if not fullname.startswith("quatspline."):
             return None
+        left = LEFT.get(fullname.removeprefix("quatspline."))
+        if left:
+            told = f"{fullname} has left the package: it is {left} of the repository"
+            raise ModuleNotFoundError(told, name=fullname)
         gone = fullname == "quatspline.report"
         return (
             ModuleSpec(fullname, self, is_package=gone)
@@ -102,9 +114,14 @@ class _Moved(MetaPathFinder, Loader):
         new = today(module.__name__)
         if new == module.__name__:
             return
-        told = f"{module.__name__} has moved to {new}; the old name goes with version 0.3"
-        warnings.warn(told, DeprecationWarning, stacklevel=2)
+        tell(module.__name__, new, 3)
         sys.modules[module.__name__] = importlib.import_module(new)
+
+
+def tell(old: str, new: str, stacklevel: int) -> None:
+    """Warn of an old name."""
+    told = f"{old} has moved to {new}; the old name goes with version 0.3"
+    warnings.warn(told, DeprecationWarning, stacklevel=stacklevel)
 
 
 def today(name: str) -> str:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from quatspline.curve import Curve
 from quatspline.instruments.trials import reason
-from quatspline.kernels.operations import UNSTATED
+from quatspline.operations import UNSTATED
 from quatspline.timing.budget import OVER, Budget, Call, Job, rungs
 from quatspline.timing.interleaved import timed
 from quatspline.timing.operations import OPERATIONS, per_keyframe, per_sample

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from quatspline.curve import Curve
-from quatspline.kernels.operations import UNSTATED, Operations, Per
+from quatspline.operations import UNSTATED, Operations, Per
 
 OPERATIONS = ("slerps", "exps", "logs")
 """The kinds that tables count."""

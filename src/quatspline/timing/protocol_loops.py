@@ -6,10 +6,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from quatspline.engines.compiler import address, machine
+from quatspline.engines.driver import described, sample
+from quatspline.engines.intrinsics import call_fit
 from quatspline.inputs.arrays import FloatArray
-from quatspline.kernels.compiler import address, machine
-from quatspline.kernels.driver import described, sample
-from quatspline.kernels.intrinsics import call_fit
 from quatspline.kernels.jit import compiled
 from quatspline.segments import SegmentCurve
 

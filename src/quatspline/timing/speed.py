@@ -19,8 +19,8 @@ import numpy as np
 
 from quatspline.catalogue import scheme
 from quatspline.curve import Curve
+from quatspline.engines import engine
 from quatspline.instruments.trials import reason
-from quatspline.kernels import engine
 from quatspline.options import among
 from quatspline.quaternion import FloatArray
 from quatspline.timing.budget import Budget, OverBudget, calls, seconds

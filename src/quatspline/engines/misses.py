@@ -11,8 +11,8 @@ import math
 import numpy as np
 from numba import carray
 
-from quatspline.kernels.driver import SHEET
-from quatspline.kernels.intrinsics import call_sample, on_stack
+from quatspline.engines.driver import SHEET
+from quatspline.engines.intrinsics import call_sample, on_stack
 from quatspline.kernels.jit import (
     BLOCK,
     CONSTANTS,

@@ -23,7 +23,7 @@ from typing import Any
 
 import numpy as np
 
-from quatspline.kernels.jit import Compiled, Kernel
+from quatspline.kernels.jit import ROOMS, Compiled, Kernel
 from quatspline.system.caching import cache_base
 from quatspline.system.forking import undivided
 
@@ -110,7 +110,7 @@ def _is_warm() -> bool:
 def _mark() -> Path:
     """A file named after the sources of compiled code and numba's version."""
     digest = hashlib.sha256(f"{version('numba')} {sys.implementation.cache_tag}".encode())
-    for room in ("kernels", "families", "fitting", "proposed"):
+    for room in ROOMS:
         for path in sorted((Path(__file__).parents[1] / room).glob("*.py")):
             digest.update(path.read_bytes())
     return cache_base() / f"{digest.hexdigest()[:16]}.warm"
@@ -151,7 +151,7 @@ def native() -> Any:
     global _native
     if _native is None:
         with undivided():  # a fork waits for the import
-            from quatspline.kernels import native as module
+            from quatspline.engines import native as module
 
             _native = module
     return _native

@@ -13,9 +13,10 @@ import math
 import numpy as np
 from numba import carray
 
+from quatspline.engines.compiler import machine
+from quatspline.engines.intrinsics import at_address, call_fit, call_sample, on_stack, splat
+from quatspline.engines.locating import INSIDE, LONG, MIXED, locate
 from quatspline.inputs.arrays import FloatArray, IntArray
-from quatspline.kernels.compiler import machine
-from quatspline.kernels.intrinsics import at_address, call_fit, call_sample, on_stack, splat
 from quatspline.kernels.jit import (
     BLOCK,
     CONSTANTS,
@@ -27,7 +28,6 @@ from quatspline.kernels.jit import (
     compiled,
     inlined,
 )
-from quatspline.kernels.locating import INSIDE, LONG, MIXED, locate
 from quatspline.kernels.values import put_quat, put_vec, quat_at, vec_at
 
 BATCH = 1024

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from quatspline.engines import driver, misses
+from quatspline.engines.compiler import address, machine
 from quatspline.inputs.arrays import FloatArray
-from quatspline.kernels import driver, misses
-from quatspline.kernels.compiler import address, machine
 from quatspline.kernels.jit import Kernel
 
 described = driver.described

@@ -9,7 +9,7 @@ from llvmlite import ir
 from numba import extending
 from numba.core import types
 
-from quatspline.kernels.compiler import SHEET, SIGNATURES
+from quatspline.engines.compiler import SHEET, SIGNATURES
 from quatspline.kernels.jit import LANES
 
 intrinsic: Any = extending.intrinsic  # typed, mypy would ask callers for the typing context

@@ -21,7 +21,7 @@ from numba import carray, extending
 from numba.core import types
 from numba.core.compiler_lock import global_compiler_lock
 
-from quatspline.kernels.jit import BLOCK, INLINED, ROWS, Compiled, Kernel, rows_of
+from quatspline.kernels.jit import BLOCK, INLINED, ROOMS, ROWS, Compiled, Kernel, rows_of
 from quatspline.kernels.values import Mat, Quat, Vec
 from quatspline.system import forking
 from quatspline.system.caching import cache_base
@@ -111,18 +111,13 @@ def compiled_from(source: Path) -> set[Path]:
         seen.add(path)
         for module in _imported(path.read_text(encoding="utf-8")):
             found = package.joinpath(*today(module).split(".")[1:]).with_suffix(".py")
-            apart = found.parent.name not in ROOMS or found.stem in DRIVING
-            if not apart and found not in seen and found.is_file():
+            if found.parent.name in ROOMS and found not in seen and found.is_file():
                 pending.append(found)
     return seen
 
 
-SHARED = [Path(__file__).with_name(f"{name}.py") for name in ("jit", "values", "loops")]
+SHARED = [Path(__file__).parents[1] / f"kernels/{name}.py" for name in ("jit", "values", "loops")]
 """What takes part in all machine code, whatever a source says."""
-ROOMS = ("kernels", "families", "fitting", "proposed")
-"""Where compiled code stands, besides the file of a scheme ..."""
-DRIVING = {"engine", "plain", "native", "compiler", "driver", "locating", "misses", "intrinsics"}
-"""... and modules of the first room that only drive it."""
 IMPORT = re.compile(
     r"^(?:from|import)[ \t]+(quatspline[\w.]*)(?:[ \t]+import[ \t]+(\([^)]*\)|[^\n]+))?",
     re.MULTILINE,
