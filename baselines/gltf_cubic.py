@@ -9,9 +9,9 @@ import numpy as np
 from quatspline.families.normalised import ARRIVING, CHORD, LEAVING, NORMALISED, set_ends
 from quatspline.inputs.arrays import at, real_array, refuse_infinite
 from quatspline.kernels.jit import REACH, compiled, fit_kernel
-from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import keyframe, put_quat, quat_at
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.options import LARGEST
 from quatspline.quaternion import FloatArray
 from quatspline.segments import SegmentCurve

@@ -6,9 +6,9 @@ import numpy as np
 
 from quatspline.families.normalised import NORMALISED, set_excess
 from quatspline.kernels.jit import REACH, compiled, fit_kernel
-from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import keyframe, put_quat, quat_at
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.segments import SegmentCurve
 
 

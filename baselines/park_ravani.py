@@ -11,9 +11,9 @@ from quatspline.fitting.tangents import chart_velocity
 from quatspline.inputs.arrays import at, real_array, refuse_infinite
 from quatspline.kernels.jacobians import coefficients, right_jacobian
 from quatspline.kernels.jit import REACH, fit_kernel
-from quatspline.kernels.operations import Operations, Per
 from quatspline.kernels.values import Vec, quat_at, turn, vec_at
 from quatspline.keyframes import Keyframes
+from quatspline.operations import Operations, Per
 from quatspline.options import LARGEST
 from quatspline.quaternion import FloatArray
 from quatspline.segments import SegmentCurve
