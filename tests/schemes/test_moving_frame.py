@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -14,6 +13,7 @@ import quatspline as qs
 from golden import GOLDEN, KNOTS, Q, assert_golden_new, new_entries
 from quatspline import quaternion
 from quatspline.families.nearest_rotation import by_three, by_two
+from quatspline.instruments.frame_error import frame_error
 from quatspline.kernels.values import Mat, Vec
 from quatspline.quaternion import FloatArray
 from smoothness import assert_joined, assert_own_rates, motion
@@ -190,33 +190,19 @@ def test_ends_keep_the_order(degree: int, ends: str, counts: tuple[int, int]) ->
     assert np.log2(errors[0] / errors[1]) > degree + 1 - 0.4
 
 
-BERNOULLI = {4: 1 / 30, 6: 1 / 42, 8: 1 / 30, 10: 5 / 66}
+@pytest.mark.parametrize("degree", DEGREES)
+def test_the_constant_of_the_error(degree: int) -> None:
+    """That of flat splines, on a closed motion: the published bound with its constant."""
+    row = frame_error(degree, "closed", 64)
+    assert row["constant"] == pytest.approx(row["expected"], rel=0.15)
+    assert row["axis_constant"] < row["axis_bound"]
 
 
 @pytest.mark.parametrize("degree", DEGREES)
-def test_the_constant_of_the_error(degree: int) -> None:
-    """On a closed motion, that of flat splines: c h^(k+1) times the skew part of R^T R^(k+1)."""
-    m, count = degree + 1, 64
-    knots = np.linspace(0.0, 2.0 * np.pi, count + 1)
-    spin, roll = np.array([0.6, 0.0, 0.8]), np.array([0.0, 2.0, 0.0])  # R = exp[spin t] exp[roll t]
-
-    def motion(t: FloatArray) -> FloatArray:
-        half = 0.5 * t[:, None]
-        return quaternion.mul(quaternion.exp(half * spin), quaternion.exp(half * roll))
-
-    curve = qs.build("moving-frame", knots, motion(knots[:-1]), degree=degree, closed=True)
-    t = inside(knots, 9)
-    a, b = (
-        [np.linalg.matrix_power(-np.cross(np.eye(3), v).T, j) for j in range(m + 1)]
-        for v in (spin, roll)
-    )
-    left, right = (matrices(quaternion.exp(0.5 * t[:, None] * v)) for v in (spin, roll))
-    derivative = sum(math.comb(m, j) * a[j] @ left @ right @ b[m - j] for j in range(m + 1))
-    skew = np.swapaxes(left @ right, -1, -2) @ derivative
-    turn = 0.5 * np.stack([skew[:, i, j] - skew[:, j, i] for i, j in ((2, 1), (0, 2), (1, 0))], -1)
-    constant = (2.0 - 2.0 ** (1 - m)) * BERNOULLI[m] / math.factorial(m)
-    predicted = constant * knots[1] ** m * np.linalg.norm(turn, axis=1).max()
-    assert apart_up_to_sign(curve(t), motion(t)) == pytest.approx(predicted, rel=0.1)
+def test_the_order_with_given_ends(degree: int) -> None:
+    coarse, fine = (frame_error(degree, "given", count) for count in (24, 48))
+    order = np.log(coarse["angle"] / fine["angle"]) / np.log(coarse["spacing"] / fine["spacing"])
+    assert order > degree + 1 - 0.1
 
 
 RATES: dict[str, Any] = {
