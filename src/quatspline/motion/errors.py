@@ -7,7 +7,6 @@ from pathlib import Path
 
 from quatspline.system.sentence import one_line
 
-
 MOST = 384
 """Characters of a sentence: it may quote a file, and tell of a file's faults each kind."""
 
