@@ -78,6 +78,6 @@ def caption(table: pd.DataFrame) -> str:
     return (
         "Largest angle between moving frames and the closed motion that their keyframes come from, against the "
         "spacing, by the degree of the splines: (a) closed curves, with the constants of flat splines dotted; the "
-        "same motion cut open (b) with complete ends, estimated from the keyframes, (c) with natural ones, which leave their "
-        "own error whatever the degree is inside."
+        "same motion cut open (b) with complete ends, estimated from the keyframes, (c) with natural ones, which "
+        "leave their own error whatever the degree is inside."
     )
