@@ -23,7 +23,7 @@ from types import FunctionType
 from typing import Any
 
 from quatspline.kernels import loops
-from quatspline.kernels.jit import CONSTANTS, RESULT, Kernel, inlined
+from quatspline.kernels.jit import CONSTANTS, ROWS, Kernel, inlined
 from quatspline.kernels.values import restored, vec
 
 Kernels = tuple[Kernel, Kernel, Kernel]
@@ -45,9 +45,9 @@ class Family:
     far: Kernels
 
     def __post_init__(self) -> None:
-        if self.constants > RESULT - CONSTANTS:  # kernels would write into the result's rows
+        if self.constants > ROWS - CONSTANTS:  # the driver would write beyond the sheet
             raise ValueError(
-                f"{self.constants} constants per segment: a sheet has {RESULT - CONSTANTS} rows for them"
+                f"{self.constants} constants per segment: a sheet has {ROWS - CONSTANTS} rows for them"
             )
 
 
