@@ -223,20 +223,15 @@ def test_packages_of_javascript_need_node(monkeypatch: pytest.MonkeyPatch) -> No
 # -- the bridge to JavaScript -------------------------------------------------------------------
 
 
-def test_babylon_plays_the_cubic_of_gltf() -> None:
+@pytest.mark.parametrize("closed", [False, True])
+def test_babylon_plays_the_cubic_of_gltf(closed: bool) -> None:
     here("babylon-hermite")
-    for closed in (False, True):
-        times = uneven(7)
-        q = loop(times, 1, wobble=0.5) if closed else walk(7, 60.0, 3)
-        curve = qs.build("babylon-hermite", times, q, closed=closed)
-        t = inside(times)
-        i, u = curve.keyframes.locate(t)
-        h, u = curve.keyframes.spacings[i, None], u[:, None]
-        v = controls.hermite_tangents(curve.keyframes)
-        keys = np.vstack([curve.quaternions, curve.keyframes.sign * curve.quaternions[:1]])
-        wanted = (2 * u**3 - 3 * u**2 + 1) * keys[i] + (u**3 - 2 * u**2 + u) * h * v[i]
-        wanted += (3 * u**2 - 2 * u**3) * keys[(i + 1) % len(keys)] + (u**3 - u**2) * h * v[i + 1]
-        assert apart(curve(t), quaternion.normalise(wanted)) < SAME
+    times = uneven(8)
+    q = loop(times, 1, wobble=0.5) if closed else walk(8, 70.0, 3)
+    theirs, ours = (
+        qs.build(name, times, q, closed=closed) for name in ("babylon-hermite", "gltf-cubic")
+    )
+    assert apart(theirs(inside(times)), ours(inside(times))) < SAME
 
 
 def test_tangents_are_those_of_parabolas() -> None:
