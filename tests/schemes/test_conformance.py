@@ -1017,6 +1017,7 @@ MAY_DEPART = {
     "test_keeps_given_signs",
     "test_order",
     "test_support",
+    "test_lookahead",
     "test_continuity_holds",
     "test_spacing_ratios",
     "test_log_of_a_spin_goes_on",

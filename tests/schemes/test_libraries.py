@@ -249,7 +249,7 @@ def test_an_error_of_javascript_is_told_and_the_next_call_answered() -> None:
     curve = qs.build("three-slerp", None, walk(4, 50.0))
     before = curve(1.5)
     with pytest.raises(RuntimeError, match="no such call, by node"):
-        node._bridge().ask("no such call", np.zeros((2, 5)), np.zeros((1, 3)))
+        node.bridge().ask("no such call", np.zeros((2, 5)), np.zeros((1, 3)))
     assert np.array_equal(curve(1.5), before)
 
 
@@ -258,11 +258,11 @@ def test_a_bridge_that_was_killed_is_built_again() -> None:
     here("three-slerp")
     curve = qs.build("three-slerp", None, walk(4, 50.0))
     before = curve(1.5)
-    process = node._bridge().process
+    process = node.bridge().process
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
     assert np.array_equal(curve(1.5), before)
-    assert node._bridge().process.pid != process.pid
+    assert node.bridge().process.pid != process.pid
 
 
 def test_gl_matrix_keeps_single_precision_that_was_made_at_import() -> None:

@@ -43,7 +43,7 @@ class NodeCurve(PeerCurve):
         if not t.size:
             return np.empty((0, 4))
         samples = np.column_stack([t, *self.keyframes.locate(t)])
-        return _bridge().ask(self.call, self.table, samples)[:, TO_WXYZ]
+        return bridge().ask(self.call, self.table, samples)[:, TO_WXYZ]
 
 
 class Bridge:
@@ -103,7 +103,7 @@ _bridges: dict[int, Bridge] = {}
 """By process: a fork's child must not read its parent's answers."""
 
 
-def _bridge() -> Bridge:
+def bridge() -> Bridge:
     own = os.getpid()
     if own in _bridges and _bridges[own].process.poll() is not None:
         _close()
