@@ -104,6 +104,7 @@ _bridges: dict[int, Bridge] = {}
 
 
 def bridge() -> Bridge:
+    """The bridge of this process, begun where there is none, or none that lives."""
     own = os.getpid()
     if own in _bridges and _bridges[own].process.poll() is not None:
         _close()
