@@ -43,6 +43,9 @@ WINDOW = 4
 ROUNDING = 1e-14
 """Half angles below this are rounding."""
 
+TIES, QUADRATIC = 3, 1e-8
+"""Corrections by `tie` at most; each squares the gap, and after one of 1e-8 nothing is left."""
+
 
 @inlined
 def spacing(h, i, closed, clamped):
@@ -132,6 +135,17 @@ def tie(d, w):
         if gap @ gap > ROUNDING * ROUNDING:
             put_vec_column(w, j, step + inverse_right_jacobian(step, gap))
     return math.sqrt(worst)
+
+
+@compiled
+def settle(d, w, met):
+    """Increments that lead exactly from control to control, d_{k+1} = d_k exp(w_{k+1})."""
+    if not met:
+        increments(d, w)
+    else:
+        for _ in range(TIES):
+            if tie(d, w) <= QUADRATIC:
+                break
 
 
 @inlined
