@@ -6,7 +6,6 @@ Elimination is by blocks, each pivoted by rows.  It takes one row after the othe
 that a Newton iteration assembles and eliminates in one sweep and never stores its matrix.  In the
 cyclic system, where row 0 also holds x_{n-1} and row n-1 also x_0, every row carries a further
 block for x_{n-1}, which a last 3x3 system then gives.  With n = 2 both neighbours are one unknown.
-
 """
 
 from __future__ import annotations
@@ -15,7 +14,6 @@ import numpy as np
 
 from quatspline.kernels.jit import compiled, inlined
 from quatspline.kernels.values import Mat, Vec, put_vec, transposed, vec_at
-from quatspline.quaternion import FloatArray
 
 # notation: work = (C, V, last, x): after `forward` x_k + C_k x_{k+1} + V_k x_{n-1} = rhs_k, where V
 # is used by cyclic systems only; last holds L, D, U of the cyclic system's last row.  Arrays (n, 9)
@@ -135,46 +133,3 @@ def _substitute_cyclic(n, over, border, last, x):
     for k in range(n - 1):
         put_vec(x[k], 0, vec_at(x[k], 0) - block(border, k) @ final)
     put_vec(x[n - 1], 0, final)
-
-
-def _columns(blocks: FloatArray) -> FloatArray:
-    """Blocks (n, 3, 3) as rows (n, 9), column by column."""
-    columns = np.swapaxes(np.asarray(blocks, dtype=float), 1, 2)
-    return np.ascontiguousarray(columns).reshape(len(columns), 9)
-
-
-@compiled
-def _solve_system(lower, diagonal, upper, rhs, cyclic):
-    n = rhs.shape[0]
-    work = workspace(n, cyclic)
-    for k in range(n):
-        row = block(lower, k), block(diagonal, k), block(upper, k), vec_at(rhs[k], 0)
-        forward(k, n, cyclic, *row, work)
-    backward(n, cyclic, work)
-    return work[3]
-
-
-def solve_block_tridiagonal(
-    lower: FloatArray,
-    diagonal: FloatArray,
-    upper: FloatArray,
-    rhs: FloatArray,
-    *,
-    cyclic: bool = False,
-) -> FloatArray:
-    """Solve (1) for x (n, 3).
-
-    Parameters
-    ----------
-    lower, diagonal, upper
-        (n, 3, 3).  Row k couples x_{k-1}, x_k, x_{k+1}; ``lower[0]`` and ``upper[n - 1]`` do not
-        count in an open system and couple x_{n-1} and x_0 in a cyclic one, which needs n >= 2.
-    rhs
-        (n, 3).
-    """
-    n = rhs.shape[0]
-    if cyclic and n < 2:
-        raise ValueError(f"rhs has {n} blocks: a cyclic system needs at least 2")
-    blocks = [_columns(a) for a in (lower, diagonal, upper)]
-    solution: FloatArray = _solve_system(*blocks, np.ascontiguousarray(rhs, dtype=float), cyclic)
-    return solution

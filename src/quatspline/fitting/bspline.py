@@ -29,13 +29,7 @@ from quatspline.fitting.tangents import chart_velocity
 from quatspline.kernels.jacobians import inverse_right_jacobian
 from quatspline.kernels.jit import compiled, inlined
 from quatspline.kernels.quick import exp, log
-from quatspline.kernels.values import (
-    keyframe,
-    put_vec_column,
-    quat_column,
-    vec,
-    vec_column,
-)
+from quatspline.kernels.values import keyframe, put_vec_column, quat_column, vec, vec_column
 
 WINDOW = 4
 """Keyframes in the chart estimate of an end velocity: one more than the curve's order."""

@@ -5,8 +5,8 @@ interpolate where
 
     K_i^-1 exp(w_{i+1}) K_{i+1} = q_i^-1 q_{i+1}.                                              (1)
 
-A problem is (targets, m, p, sign, clamped), x is (w, d, jets), see `newton`.  Increments
- and controls are stored component first, so that the loops over knots vectorise.
+A problem is (targets, m, p, sign, clamped), x is (w, d, jets), see `newton`.  Increments and
+controls are stored component first, so that the loops over knots vectorise.
 """
 
 from __future__ import annotations
@@ -219,12 +219,8 @@ def assemble(problem, x, work):
         set_knot_blocks(start, count + 1, m, p, w, jets, sheet)
         set_row_blocks(start, count, m, w, jets, sheet)
         for j in range(count):
-            lower, own, upper = (
-                block(sheet, LOWER, j),
-                block(sheet, OWN, j),
-                block(sheet, UPPER, j + 1),
-            )
-            rhs = vec_at(misses[start + j], 0)
+            lower, own = block(sheet, LOWER, j), block(sheet, OWN, j)
+            upper, rhs = block(sheet, UPPER, j + 1), vec_at(misses[start + j], 0)
             forward(start + j, n, sign != 0.0, lower, own, upper, rhs, work)
     backward(n, sign != 0.0, work)
 
@@ -234,17 +230,15 @@ _DESCEND, _SOLVE = newton(look, assemble)
 
 @inlined
 def _free(problem, w):
-    """What moves, see `newton`."""
-    n = w.shape[1] - 2
-    return 1, n + 1, n if problem[3] != 0.0 else n + 1, math.inf
+    """Whether the problem is cyclic, and what moves: see `newton`."""
+    n, cyclic = w.shape[1] - 2, problem[3] != 0.0
+    return cyclic, (1, n + 1, n if cyclic else n + 1, math.inf)
 
 
 @compiled
 def descend(problem, x, tolerance, by_change, limit):
     """Newton's method from the increments in x: (updates, residual, change, met)."""
-    return _DESCEND(
-        problem, x, problem[3] != 0.0, _free(problem, x[0]), tolerance, by_change, limit
-    )
+    return _DESCEND(problem, x, *_free(problem, x[0]), tolerance, by_change, limit)
 
 
 @compiled
@@ -258,10 +252,8 @@ def solve(problem, x, tolerance, by_change, limit):
     start = w[:, 1:-1].copy()
     updates, worst, change, met = descend(problem, x, tolerance, by_change, min(STAGE, limit))
     if not met and worst > ROUNDING and updates < limit:
-        given = tolerance, by_change, limit - updates
-        more, worst, change, met = _SOLVE(
-            problem, x, start, FIRST, problem[3] != 0.0, _free(problem, w), *given
-        )
+        given = *_free(problem, w), tolerance, by_change, limit - updates
+        more, worst, change, met = _SOLVE(problem, x, start, FIRST, *given)
         updates += more
         if not met and worst > ROUNDING:
             copy(problem[0], d, 1.0)
