@@ -42,6 +42,8 @@ ITERATIONS, CHANGE, RESIDUAL, REACH = range(4)
 UNREPORTED = -1.0
 """A reach that was not written: kernels for near angles must not be taken by an oversight."""
 
+OVERWRITTEN = -2.0
+"""In the place of a reach: what follows the constants was written to."""
 
 INLINED: list[Callable[..., Any]] = []
 """Functions that compiled code inlines, in the order of their definition."""
