@@ -14,15 +14,11 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-import numba
 import pytest
-from numba import config
 
 import quatspline as qs
 from processes import STUCK, environment, python
 from quatspline import catalogue
-from quatspline.engines import compiler
-from quatspline.kernels import jit
 from quatspline.system.quiet import quiet
 
 TRIAL = Path(__file__).parents[1] / "robustness" / "threads.py"
@@ -187,45 +183,7 @@ print(importing.is_alive(), listing.is_alive(), "held" in qs.schemes(), "slerp" 
     assert python(code, folder.parent) == "False False True True"
 
 
-# -- compilation and peers ----------------------------------------------------------------------
-
-
-def test_two_files_decorated_at_once_keep_their_cache_folders(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    before = config.CACHE_DIR
-    inside, left = [threading.Event(), threading.Event()], threading.Event()
-
-    def decorating(**settings: Any) -> Callable[..., bool]:
-        def decorate(function: Callable[[], Any]) -> bool:
-            inside[function()[0]].set()
-            function()[1]()
-            return compiler.cache_folder(Path(function.__code__.co_filename)) == config.CACHE_DIR
-
-        return decorate
-
-    def decorated(place: int, meet: Callable[[], Any]) -> bool:
-        path = tmp_path / f"kernels_{place}.py"
-        path.write_text(f"def f():\n    return {place}, meet\n")
-        names: dict[str, Any] = {"meet": meet}
-        exec(compile(path.read_text(), str(path), "exec"), names)
-        return compiler.machine(jit.compiled(names["f"]))
-
-    monkeypatch.setattr(numba, "njit", decorating)
-
-    def first() -> bool:
-        right = decorated(0, lambda: inside[1].wait(LATE))  # the other one must not come in
-        left.set()
-        return right
-
-    def second() -> bool:
-        assert inside[0].wait(60)
-        return decorated(1, lambda: left.wait(60))
-
-    for thread, results in [started(call) for call in (first, second)]:
-        thread.join(60)
-        assert results == [True]
-    assert before == config.CACHE_DIR
+# -- peers ----------------------------------------------------------------------
 
 
 def test_peers_in_two_threads_leave_the_filters_of_warnings() -> None:

@@ -40,6 +40,8 @@ COLUMNS = {
     "invariance": {"property", "deviation", "relative", "invariant"},
     "locality": {"offset", "response", "amplification", "support", "decay", "agrees"},
     "noise": {"error", "gain", "gain_omega", "gain_alpha"},
+    "reconstruct": {"clip", "filter", "every", "over_slerp", "worst_joint", "end_cm", "alpha"},
+    "reduce": {"clip", "filter", "error_degrees", "keyframes", "over_slerp", "worst_joint"},
 }
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+import os
 import struct
 import warnings
 from collections.abc import Callable
@@ -323,6 +324,14 @@ ROWS: dict[str, tuple[str, str, str]] = {
     "kitti: mirrored": ("a.kitti", "1 0 0 0 0 1 0 0 0 0 -1 0\n", "matrix mirrors"),
     "kitti: ragged": ("a.kitti", "1 0 0 0 0 1 0 0 0 0 1 0\n1 2\n", "line 2: expected 12 fields"),
     "kitti: empty": ("a.kitti", "\n", "no keyframes in it"),
+    "csv: digits of another script": ("a.csv", "\u0661,1,0,0,0\n", "'\u0661' is not a number"),
+    "csv: an endless line": (
+        "a.csv",
+        "0" * (2**20 + 1),
+        ", line 1: longer than 1,048,576 characters",
+    ),
+    "csv: a colour": ("a.csv", "0,\x1b[31m1,0,0,0\n", r"qw = '\x1b[31m1' is not a number"),
+    "csv: a long word": ("a.csv", "0," + "x" * 5000 + ",0,0,0\n", "is not a number (1 row)"),
 }
 
 
@@ -330,6 +339,21 @@ ROWS: dict[str, tuple[str, str, str]] = {
 def test_rows(tmp_path: Path, name: str, text: str, what: str) -> None:
     options = {"rate": 10} if name.endswith(".kitti") else {}
     assert what in refusal(put(tmp_path / name, text), **options)
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".tum", ".npz", ".bvh", ".amc", ".asf", ".glb"])
+def test_what_may_never_end_is_not_opened(tmp_path: Path, suffix: str) -> None:
+    pipe, device = tmp_path / f"pipe{suffix}", tmp_path / f"zero{suffix}"
+    os.mkfifo(pipe)
+    device.symlink_to("/dev/zero")
+    motions = put(tmp_path / "a.amc", AMC)
+    for path, what in ((pipe, "a pipe, not a file"), (device, "a device, not a file")):
+        if suffix == ".asf":
+            assert refusal(motions, skeleton=path).endswith(what)
+        else:
+            assert refusal(path) == f": {what}"
+    with pytest.raises(qs.MotionFileError, match="a pipe, not a file"):
+        qs.read_motion(put(tmp_path / "a.bvh", BVH), times=pipe)
 
 
 @pytest.mark.parametrize(

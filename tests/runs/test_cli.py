@@ -86,6 +86,10 @@ def test_list_imports_no_table_no_figure() -> None:
         (["sample", "k.csv", "--scheme", "stairs", "--rate", "fast"], "'fast': a positive number"),
         (["sample", "k.csv", "--scheme", "stairs", "--rate", "1e308"], "samples are too many"),
         (["sample", "k.csv", "--scheme", "stairs", "--count", "10000000000"], "are too many"),
+        (["sample", "k.csv", "--scheme", "stairs", "--count", "1" + 400 * "0"], "a whole number"),
+        (["sample", "k.csv", "--scheme", "stairs", "--count", "1_0"], "'1_0': a whole number"),
+        (["run", 5000 * "x"], "xxx..."),
+        (["info", "\x1b[31m.csv"], r"quatspline: \x1b[31m.csv: cannot be read: No such file"),
         (["sample", "no.csv", "--scheme", "stairs", "--count", "2"], "no.csv: cannot be read"),
         (
             ["sample", "bad.csv", "--scheme", "stairs", "--count", "2"],
@@ -141,7 +145,10 @@ def test_bad_usage_and_bad_input_are_told_in_one_line(
     desk.keyframes("long.csv", "-1e308,1,0,0,0\n1e308,0.8,0.6,0,0\n")
     desk.keyframes("uneven.csv", "0,1,0,0,0\n1,0.8,0.6,0,0\n5,0.6,0.8,0,0\n")
     done = desk(*arguments)
-    assert what in refused(done)
+    told = refused(done)
+    assert what in told
+    assert len(told) < 400
+    assert told.strip("\n").isprintable()
     assert done.stdout == ""
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, Literal, NoReturn
 
 from quatspline import __version__
+from quatspline.system.sentence import one_line
 
 REFUSED = 2
 """The status of bad usage and bad input."""
@@ -19,7 +20,7 @@ class _Parser(argparse.ArgumentParser):
     """Tells bad usage in one line."""
 
     def error(self, message: str) -> NoReturn:
-        self.exit(REFUSED, f"{self.prog}: {message} (see {self.prog} --help)\n")
+        self.exit(REFUSED, f"{self.prog}: {one_line(message)} (see {self.prog} --help)\n")
 
 
 def parser() -> argparse.ArgumentParser:
@@ -149,7 +150,7 @@ def _add_force(parser: argparse.ArgumentParser) -> None:
 def _number(kind: type, accepts: Callable[[Any], bool], wanted: str) -> Callable[[str], Any]:
     def parsed(text: str) -> Any:
         with suppress(ValueError):
-            if accepts(value := kind(text)):
+            if text.isascii() and "_" not in text and accepts(value := kind(text)):
                 return value
         raise argparse.ArgumentTypeError(f"{text!r}: {wanted} is expected")
 
@@ -169,6 +170,9 @@ def _angle(text: str) -> float:
 
 
 _rate = _number(float, lambda value: 0.0 < value < math.inf, "a positive number")
-_count = _number(int, lambda value: value >= 1, "a whole number, at least 1,")
-_frames = _number(int, lambda value: value >= 0, "a whole number, at least 0,")
+MOST = 2**63 - 1
+"""Of what is counted: beyond, a number is a slip of the keyboard and fits into no array."""
+
+_count = _number(int, lambda value: 1 <= value <= MOST, "a whole number, at least 1,")
+_frames = _number(int, lambda value: 0 <= value <= MOST, "a whole number, at least 0,")
 _seed = _number(int, lambda value: value >= 0, "a whole number, at least 0,")

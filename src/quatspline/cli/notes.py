@@ -7,10 +7,12 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from quatspline.system.sentence import one_line
+
 
 def note(line: str) -> None:
     """Say one line."""
-    print(f"quatspline: {' '.join(line.split())}", file=sys.stderr)
+    print(f"quatspline: {one_line(line)}", file=sys.stderr)
 
 
 @contextmanager

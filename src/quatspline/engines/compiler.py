@@ -10,7 +10,6 @@ from __future__ import annotations
 import hashlib
 import operator
 import re
-import tempfile
 from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
@@ -19,8 +18,10 @@ from typing import Any
 import numba
 from numba import carray, extending
 from numba.core import types
+from numba.core.ccallback import CFunc
 from numba.core.compiler_lock import global_compiler_lock
 
+from quatspline.engines.disk import cached_in
 from quatspline.kernels.jit import BLOCK, INLINED, ROOMS, ROWS, Compiled, Kernel, rows_of
 from quatspline.kernels.values import Mat, Quat, Vec
 from quatspline.system import forking
@@ -38,7 +39,7 @@ SHEET = types.CPointer(types.float64)
 _vector = types.Array(types.float64, 1, "C")
 _matrix = types.Array(types.float64, 2, "C")
 
-SIGNATURES = {
+SIGNATURES: dict[str, Any] = {
     "sample": types.void(SHEET, types.intp),
     "fit": types.void(_matrix, _vector, types.boolean, types.float64, _vector, _matrix, _vector),
 }
@@ -52,9 +53,10 @@ def machine(function: Compiled) -> Any:
     if function.machine is None:
         with forking.undivided(), global_compiler_lock:
             if function.machine is None:  # another thread may have been here first
-                python = function.python
-                decorate = numba.njit(cache=True, nogil=True, **SETTINGS)
-                function.machine = _cached(python, lambda: decorate(python))
+                _teach_functions()
+                made: Any = numba.njit(nogil=True, **SETTINGS)(function.python)
+                made._cache = _cache_of(function.python)
+                function.machine = made
     return function.machine
 
 
@@ -63,49 +65,33 @@ def address(kernel: Kernel) -> int:
     if not kernel.address:
         with forking.undivided(), global_compiler_lock:
             if kernel.machine is None:
-                python = kernel.python
-                decorate = numba.cfunc(SIGNATURES[kernel.kind], cache=True, **SETTINGS)
-                kernel.machine = _cached(python, lambda: decorate(python))
+                _teach_functions()
+                kind = SIGNATURES[kernel.kind]
+                made: Any = CFunc(kernel.python, (kind.args, kind.return_type), {}, dict(SETTINGS))
+                made._cache = _cache_of(kernel.python)
+                made.compile()
+                kernel.machine = made
             kernel.address = int(kernel.machine.address)
     return kernel.address
 
 
-def _cached(function: Callable[..., Any], decorate: Callable[[], Any]) -> Any:
-    """Run a numba decorator with the cache in our folder, leaving numba's own setting alone.
-
-    That setting is the process's: of two threads at once, one would compile into the other's folder,
-    or leave its own behind.  The lock is the one that numba compiles under, so that no two locks can
-    be taken in two orders.
-    """
-    _teach_functions()
-    folder = cache_folder(Path(function.__code__.co_filename))
-    config: Any = numba.config
-    with forking.undivided(), global_compiler_lock:
-        before = config.CACHE_DIR
-        config.CACHE_DIR = folder
-        try:
-            return decorate()
-        finally:
-            config.CACHE_DIR = before
+def _cache_of(function: Callable[..., Any]) -> Any:
+    return cached_in(cache_folder(Path(function.__code__.co_filename)), function)
 
 
 @cache
-def cache_folder(source: Path) -> str:
+def cache_folder(source: Path) -> Path:
     """The folder for code compiled from a file, named after all sources that take part in it."""
     digest = hashlib.sha256(numba.__version__.encode())
     for path in sorted(compiled_from(source)):
         digest.update(path.read_bytes())
-    folder = cache_base() / digest.hexdigest()[:16]
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        folder = Path(tempfile.mkdtemp(prefix="quatspline-"))
-    return str(folder)
+    return cache_base() / digest.hexdigest()[:16]
 
 
 def compiled_from(source: Path) -> set[Path]:
     """A file and the files of this package that it imports compiled code from, and so on."""
-    package, seen, pending = Path(__file__).parents[1], {Path(__file__), *SHARED}, [source, *SHARED]
+    package, seen = Path(__file__).parents[1], {source, *SHARED}
+    pending = [*seen]
     while pending:
         path = pending.pop()
         seen.add(path)
@@ -116,7 +102,10 @@ def compiled_from(source: Path) -> set[Path]:
     return seen
 
 
-SHARED = [Path(__file__).parents[1] / f"kernels/{name}.py" for name in ("jit", "values", "loops")]
+SHARED = [
+    Path(__file__),
+    *(Path(__file__).parents[1] / f"kernels/{name}.py" for name in ("jit", "values", "loops")),
+]
 """What takes part in all machine code, whatever a source says."""
 IMPORT = re.compile(
     r"^(?:from|import)[ \t]+(quatspline[\w.]*)(?:[ \t]+import[ \t]+(\([^)]*\)|[^\n]+))?",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import matplotlib as mpl
@@ -25,10 +25,12 @@ def log_heat(
     *,
     names_shown: bool = True,
     colours: str = COLOURS,
+    ticks: Mapping[float, str] | None = None,
 ) -> None:
     """Colour a frame of positive numbers, first row on top; grey where there is none.
 
-    Numbers outside the limits take the colour of the nearer one, which the colour bar marks.
+    Numbers outside the limits take the colour of the nearer one, which the colour bar marks.  ``ticks`` are
+    what stands at numbers of the bar, by default powers of ten.
     """
     low, high = limits
     values = np.ma.masked_invalid(frame.to_numpy(dtype=float))
@@ -38,6 +40,9 @@ def log_heat(
     _label(ax, frame, names_shown)
     bar = ax.figure.colorbar(image, ax=ax, orientation="horizontal", aspect=40, extend="both")
     bar.set_label(label)
+    if ticks is not None:
+        bar.set_ticks(list(ticks), labels=list(ticks.values()))
+        bar.minorticks_off()
 
 
 def label_cells(ax: Any, texts: pd.DataFrame, dark: pd.DataFrame) -> None:

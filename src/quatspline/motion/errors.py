@@ -5,6 +5,11 @@ from __future__ import annotations
 import warnings
 from pathlib import Path
 
+from quatspline.system.sentence import one_line
+
+MOST = 384
+"""Characters of a sentence: it may quote a file, and tell of a file's faults each kind."""
+
 
 class MotionFileError(ValueError):
     """A motion file that cannot be read or written: one sentence of the file, the line and the reason.
@@ -17,6 +22,9 @@ class MotionFileError(ValueError):
     quatspline.motion.errors.MotionFileError: walk.bhv: unknown suffix '.bhv': did you mean '.bvh'?
     """
 
+    def __init__(self, sentence: str) -> None:
+        super().__init__(one_line(sentence, MOST))
+
 
 class MotionFileWarning(UserWarning):
     """A motion file of which something was left out or taken in one of several ways."""
@@ -24,4 +32,4 @@ class MotionFileWarning(UserWarning):
 
 def warn(path: str | Path, what: str) -> None:
     """Say what a reader or writer did that its user may not expect."""
-    warnings.warn(f"{path}: {what}", MotionFileWarning, stacklevel=2)
+    warnings.warn(one_line(f"{path}: {what}"), MotionFileWarning, stacklevel=2)

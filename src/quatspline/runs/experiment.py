@@ -35,6 +35,7 @@ from quatspline import catalogue
 from quatspline.instruments.trials import reason
 from quatspline.options import nearest
 from quatspline.runs.provenance import cpu_model, versions
+from quatspline.trajectories import clips
 
 if TYPE_CHECKING:
     import numpy as np
@@ -190,11 +191,12 @@ def fingerprint(runs: dict[str, Run]) -> str:
 
 
 def sources() -> str:
-    """A hash of the package's files, of all schemes and of all experiments."""
+    """A hash of the package's files, of all schemes, of all experiments and of the clips they run on."""
     paths = {path for path in catalogue.PACKAGE.rglob("*") if "__pycache__" not in path.parts}
     paths |= {path for folder in catalogue.folders() for path in folder.glob("*.py")}
     folders = {path.parent for path in files().values()}  # experiments may share private modules
     paths |= {path for folder in folders for path in folder.glob("*.py")}
+    paths |= set(clips.contents())
     digest = hashlib.sha256()
     for path in sorted({path.resolve() for path in paths if path.is_file()}):
         digest.update(path.name.encode() + path.read_bytes())

@@ -31,6 +31,7 @@ from quatspline.engines.engine import always_compiled
 from quatspline.runs import experiment
 from quatspline.runs.experiment import Run
 from quatspline.runs.journal import Cell, Kept, key
+from quatspline.trajectories import clips
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -241,7 +242,8 @@ def _sources(*environment: tuple[str, str]) -> str:
 
 
 def _environment() -> dict[str, str]:
-    """The folders of schemes and experiments, for a process that started elsewhere."""
+    """The folders of schemes, experiments and clips, for a process that started elsewhere."""
     names = (catalogue.FOLDERS, experiment.FOLDERS)
     folders = {name: os.environ.get(name, "").split(os.pathsep) for name in names}
+    folders[clips.FOLDER] = [os.environ.get(clips.FOLDER, "")]  # one, whatever is in its name
     return {k: os.pathsep.join(os.path.abspath(p) for p in v if p) for k, v in folders.items()}

@@ -21,6 +21,7 @@ from quatspline.motion.files.columns import CSV_COLUMNS, EUROC_COLUMNS, KITTI_CO
 from quatspline.motion.files.glb import write_glb
 from quatspline.motion.files.gltf import read_gltf
 from quatspline.motion.files.npz import read_npz
+from quatspline.motion.files.opening import check_regular
 from quatspline.motion.files.reading import Reading
 from quatspline.motion.files.text import read_text
 from quatspline.motion.files.writing import write_csv, write_euroc, write_npz, write_tum
@@ -81,6 +82,7 @@ def read(path: str | Path, reading: Reading | None = None) -> Motion:
     path = Path(path)
     reading.check_use(path, found.takes)
     try:
+        check_regular(path)
         motion = found.read(path, reading)
     except OSError as error:
         raise MotionFileError(f"{path}: cannot be read: {error.strerror or error}") from None

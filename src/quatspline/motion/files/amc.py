@@ -14,8 +14,9 @@ import numpy as np
 from quatspline import quaternion
 from quatspline.motion.errors import MotionFileError, warn
 from quatspline.motion.files.asf import ROOT_NAME, Bones, fixed_turns, read_asf
+from quatspline.motion.files.opening import is_whole, lines_of
 from quatspline.motion.files.reading import Reading
-from quatspline.motion.files.scripts import Line, lines_of, matrix, refusal
+from quatspline.motion.files.scripts import Line, matrix, refusal
 from quatspline.motion.motion import Motion
 
 RATE = 120.0
@@ -77,7 +78,7 @@ def _frames(path: Path, lines: Sequence[str], bones: Bones) -> tuple[bool, dict[
             continue
         if words[0].startswith(":"):
             degrees = {":DEGREES": True, ":RADIANS": False}.get(words[0].upper(), degrees)
-        elif len(words) == 1 and words[0].isdecimal():
+        elif len(words) == 1 and is_whole(words[0]):
             _check_frame(path, number, found, last)
             shown = int(words[0][:18])
             first = first if last else shown

@@ -11,7 +11,8 @@ import numpy as np
 from quatspline.motion import euler
 from quatspline.motion.errors import MotionFileError
 from quatspline.motion.euler import AXES
-from quatspline.motion.files.scripts import lines_of, numbers, refusal
+from quatspline.motion.files.opening import lines_of
+from quatspline.motion.files.scripts import numbers, refusal
 from quatspline.motion.skeleton import ROOT, Skeleton
 from quatspline.quaternion import FloatArray
 

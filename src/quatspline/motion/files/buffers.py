@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quatspline.motion.errors import MotionFileError
+from quatspline.motion.files.opening import check_regular
 from quatspline.quaternion import FloatArray
 
 MAGIC, JSON, BINARY = b"glTF", 0x4E4F534A, 0x004E4942
@@ -141,6 +142,7 @@ class Document:
         ):
             self.refuse(f"buffer {uri[:60]!r}: only files in its folder are read")
         try:
+            check_regular(self.path.parent / name)
             return (self.path.parent / name).read_bytes()
         except OSError as error:
             self.refuse(f"buffer {name[:60]!r} cannot be read: {error.strerror or error}")

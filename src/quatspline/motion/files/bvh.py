@@ -11,9 +11,11 @@ import numpy as np
 from quatspline import quaternion
 from quatspline.motion import euler
 from quatspline.motion.errors import warn
+from quatspline.motion.files import opening
 from quatspline.motion.files.bvh_tree import Tree, tree
+from quatspline.motion.files.opening import is_whole, lines_of
 from quatspline.motion.files.reading import Reading
-from quatspline.motion.files.scripts import Line, lines_of, matrix, refusal
+from quatspline.motion.files.scripts import Line, matrix, refusal
 from quatspline.motion.motion import Motion
 from quatspline.motion.skeleton import Skeleton
 from quatspline.quaternion import FloatArray
@@ -87,7 +89,7 @@ def _announced(path: Path, lines: Sequence[str], start: int) -> tuple[int, str, 
         if len(told) == 2:
             break
     (at, frames), (number, time) = (*told, (len(lines), []), (len(lines), []))[:2]
-    if [word.upper() for word in frames[:-1]] != ["FRAMES:"] or not frames[-1].isdecimal():
+    if [word.upper() for word in frames[:-1]] != ["FRAMES:"] or not is_whole(frames[-1]):
         raise refusal(path, at, "'Frames:' and a whole number are expected")
     if [word.upper() for word in time[:-1]] != ["FRAME", "TIME:"] or not _is_period(time[-1]):
         raise refusal(path, number, "'Frame Time:' and a positive number are expected")
@@ -99,10 +101,10 @@ def _announced(path: Path, lines: Sequence[str], start: int) -> tuple[int, str, 
 
 def _is_period(word: str) -> bool:
     try:
-        period = float(word)
+        period = opening.number(word)
     except ValueError:
         return False
-    return "_" not in word and math.isfinite(1.0 / period if period > 0.0 else math.inf)
+    return math.isfinite(1.0 / period if period > 0.0 else math.inf)
 
 
 def _check_rows(path: Path, rows: Sequence[Line], count: int, width: int) -> None:

@@ -12,6 +12,7 @@ from typing import TextIO
 
 from quatspline.motion.errors import MotionFileError
 from quatspline.motion.files.names import recognised
+from quatspline.motion.files.opening import number, text_lines
 
 SEPARATORS = {";": "semicolons", "|": "bars", ",": "commas", "\t": "tabs", " ": "blanks"}
 """What may separate fields; of two that suit a line alike, the first."""
@@ -41,7 +42,7 @@ class Lines:
 
     def __iter__(self) -> Iterator[str]:
         comment = _FIRST_COMMENTS
-        for line in self.stream:
+        for line in text_lines(self.path, self.stream):
             self.number += 1
             if comment.match(line):
                 if self.heading:
@@ -103,7 +104,7 @@ def is_number(text: str, decimal_comma: bool = True) -> bool:
     if decimal_comma and DECIMAL_COMMA.fullmatch(text):
         return True
     try:
-        float(text)
+        number(text)
     except ValueError:
         return text.lower() in MISSING and bool(text)
-    return "_" not in text  # float() also takes the underscores of Python's literals
+    return True

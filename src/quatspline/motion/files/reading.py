@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from quatspline.inputs.arrays import FloatArray
 from quatspline.motion.errors import MotionFileError
+from quatspline.motion.files.opening import lines_of, number
 from quatspline.options import nearest
 
 CHOICES = {
@@ -93,8 +94,8 @@ def _numbers(times: Any) -> FloatArray:
         return np.asarray(times, dtype=float)
     path = Path(times)
     try:
-        words = path.read_text(encoding="utf-8-sig").split()
-        return np.array([float(word) for word in words])
+        words = " ".join(lines_of(path)).split()
+        return np.array([number(word) for word in words])
     except OSError as error:
         raise MotionFileError(f"{path}: cannot be read: {error.strerror or error}") from None
     except ValueError as error:

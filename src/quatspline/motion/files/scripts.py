@@ -8,15 +8,11 @@ from pathlib import Path
 import numpy as np
 
 from quatspline.motion.errors import MotionFileError
+from quatspline.motion.files import opening
 from quatspline.quaternion import FloatArray
 
 Line = tuple[int, list[str]]
 """The number of a line and its words."""
-
-
-def lines_of(path: Path) -> list[str]:
-    """The lines of a file, however they end."""
-    return path.read_text(encoding="utf-8-sig").split("\n")
 
 
 def refusal(path: Path, number: int, what: object) -> MotionFileError:
@@ -36,9 +32,7 @@ def matrix(path: Path, rows: Sequence[Line]) -> FloatArray:
     words = [word for _, row in rows for word in row]
     width = len(rows[0][1]) if rows else 0
     try:
-        if any("_" in word for word in words):  # float() takes the underscores of Python's literals
-            raise ValueError("_")
-        table = np.array(list(map(float, words))).reshape(len(rows), width)
+        table = np.array(opening.numbers(words)).reshape(len(rows), width)
     except ValueError:
         raise _no_number(path, rows) from None
     if not np.isfinite(table).all():
@@ -52,9 +46,7 @@ def _no_number(path: Path, rows: Sequence[Line]) -> MotionFileError:
     for number, words in rows:
         for word in words:
             try:
-                fine = "_" not in word and float(word) is not None
+                opening.number(word)
             except ValueError:
-                fine = False
-            if not fine:
                 return refusal(path, number, f"{word!r} is not a number")
     raise AssertionError("a row without a fault was refused")

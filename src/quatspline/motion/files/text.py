@@ -23,6 +23,7 @@ from quatspline.motion.files.lines import (
     separator,
     split,
 )
+from quatspline.motion.files.opening import numbers
 from quatspline.motion.files.reading import Reading
 from quatspline.motion.motion import BODY, Motion, Times
 from quatspline.quaternion import FloatArray
@@ -97,7 +98,7 @@ class _Rows:
             self._mark(",")
             picked = [part.replace(",", ".") if _is_decimal(part) else part for part in picked]
         try:
-            values = None if "_" in joined else list(map(float, picked))
+            values = numbers(picked)
         except ValueError:
             values = None
         self.values.extend(values or map(self._value, self.names, picked))

@@ -1,0 +1,163 @@
+"""Dense recorded motion, rebuilt from every so many-th frame: what schemes are worth on what people record."""
+
+from functools import cache, partial
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from quatspline.catalogue import found
+from quatspline.figures import style
+from quatspline.figures.heat import ROW, label_cells, log_heat
+from quatspline.instruments.reconstruction import EULER, Truth, rebuild, reconstruction, truth
+from quatspline.instruments.summary import ALL, compared
+from quatspline.instruments.trials import Row, attempted
+from quatspline.runs.experiment import Run, crossed
+from quatspline.timing.budget import OVER, Budget, calls, too_many
+from quatspline.trajectories.clips import CONTROLS, OWN, clip, names
+
+TITLE = "Recorded motion, rebuilt"
+PAPER = False
+KEYS = ["clip", "filter", "every", "scheme"]
+NOTE = (
+    "Of dense motion every so many-th frame and the last are kept, and the others rebuilt. Clips are the files of the "
+    f"folder that QUATSPLINE_MOTIONS names; without it the project's own, '{OWN}', which its generator made and nobody "
+    f"recorded. '{ALL}' takes the joints of all clips together. filter: what the truth is, the recording (none) or "
+    "what a zero-phase Butterworth filter of its steps leaves. Angles are of local orientations at the frames left "
+    "out, but for those within two keyframes of an end; lower is better. over_slerp: a joint's rms angle over slerp's, "
+    "geometric mean over the compared joints, on which all schemes ran that ran on nine tenths of the clip's; "
+    "most_over_slerp: the largest. rms_degrees: the joints' rms angle, median; worst_degrees: the largest, of "
+    "worst_joint; largest_degrees: the largest angle of all. end_cm: rms distance of end effectors, the root's path "
+    "being the true one; omega, alpha: rms errors of angular velocity and acceleration over the rms of the truth's, of "
+    "filtered truth alone. Left out are joints that turn less than 1 degree, fingers and thumbs, and those of pops, "
+    "which turn faster than 1800 degrees a second somewhere. Controls: euler-linear and euler-cubic interpolate Euler "
+    "channels; 'tumble' is motion without noise, 'white noise' noise without motion."
+)
+FORMATS = {
+    **dict.fromkeys(
+        ("rms_degrees", "worst_degrees", "end_cm", "over_slerp", "most_over_slerp"), ".3f"
+    ),
+    **dict.fromkeys(("largest_degrees", "end_largest_cm"), ".2f"),
+    **dict.fromkeys(("omega", "alpha"), ".3f"),
+}
+RAW = "none"
+CUTOFFS = {RAW: None, "10 Hz": 10.0, "6 Hz": 6.0}
+KEPT = (2, 4, 8, 16, 32)
+SLERP = "slerp"
+
+FULL, QUICK = Budget(limit=2e7, meter=calls), Budget(limit=3e5, meter=calls)
+"""Of a library's scheme on all joints of a clip."""
+
+
+def cells(run: Run) -> list[dict[str, Any]]:
+    """A clip's cells follow each other: a process reads and filters it once."""
+    kept, filters = ((4, 16), (RAW, "6 Hz")) if run.quick else (KEPT, tuple(CUTOFFS))
+    schemes = [*dict.fromkeys([SLERP, *run.names]), *EULER]
+    recorded = crossed(clip=names(), filter=filters, every=kept, scheme=schemes)
+    return recorded + crossed(clip=CONTROLS, filter=(RAW,), every=kept, scheme=schemes)
+
+
+def measure_cell(run: Run, clip: str, filter: str, every: int, scheme: str) -> list[Row]:
+    measured = partial(_measured, run, clip, filter, every, scheme)
+    return attempted(measured, clip=clip, filter=filter, every=every, scheme=scheme)
+
+
+def _measured(run: Run, clip: str, filter: str, every: int, scheme: str) -> list[Row]:
+    true = _truth(clip, filter)
+    if refusal := _refusal(run, true, scheme, (every, 0, 0)):
+        return [{"failure": refusal}]
+    rates = filter != RAW and not _refusal(run, true, scheme, (every, every, every))
+    rebuilt = rebuild(true, scheme, every, rates=rates)
+    return [reconstruction(true, rebuilt, every)]
+
+
+@cache
+def _truth(name: str, filter: str) -> Truth:
+    return truth(clip(name), CUTOFFS[filter])
+
+
+def _refusal(run: Run, true: Truth, name: str, samples: tuple[int, int, int]) -> str | None:
+    """Why a scheme would take too long for so many samples of every segment, on all joints."""
+    cls = found()[name].scheme if name in found() else None
+    if cls is None:
+        return None
+    count = len(true.tracks.times) // samples[0] + 1
+    budget = QUICK if run.quick else FULL
+    affords = cls.peer is None or budget.affords(len(true.compared) * _work(name, count, samples))
+    return too_many(cls, count) or (None if affords else OVER)
+
+
+@cache
+def _work(name: str, count: int, samples: tuple[int, int, int]) -> float:
+    cls = found()[name].scheme
+    return 0.0 if cls is None else FULL.work(cls, count, samples)
+
+
+def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
+    return compared(table, KEYS, SLERP, set(CONTROLS))
+
+
+# -- the figure ---------------------------------------------------------------------------------
+
+
+def draw(table: pd.DataFrame) -> Figure:
+    panels = [(ALL, each) for each in CUTOFFS if _shown(table, ALL, each).size]
+    panels += [(name, RAW) for name in CONTROLS if _shown(table, name, RAW).size]
+    order = _order(table)
+    fig, axes = style.axes(style.PAGE, ROW * len(order) + 1.3, 1, len(panels))
+    for ax, (name, each) in zip(axes[0], panels, strict=True):
+        shown = _shown(table, name, each).reindex(order)
+        looks: dict[str, Any] = {
+            "names_shown": ax is axes[0, 0],
+            "colours": "RdBu_r",
+            "ticks": TICKS,
+        }
+        log_heat(ax, shown, "rms over slerp's", (1 / SPAN, SPAN), **looks)
+        label_cells(ax, shown.map(_text), shown.gt(DARK) | shown.lt(1 / DARK))
+        ax.set(title=_title(name, each), xlabel="every ... frame kept")
+    style.letters(axes[0])
+    return fig
+
+
+SPAN = 8.0
+"""Ratios to slerp beyond which a colour says no more."""
+DARK = 3.5
+"""Ratios beyond this, or its inverse, are written in white."""
+TICKS = {1 / 8: "1/8", 1 / 2: "1/2", 2.0: "2", 8.0: "8"}
+
+
+def _shown(table: pd.DataFrame, name: str, filter: str) -> pd.DataFrame:
+    rows = table[(table["clip"] == name) & (table["filter"] == filter)]
+    return rows.pivot(index="scheme", columns="every", values="over_slerp").dropna(how="all")
+
+
+def _order(table: pd.DataFrame) -> list[str]:
+    """Schemes that ran, the best on recorded motion first."""
+    rows = table[(table["clip"] == ALL) & table["over_slerp"].notna()]
+    logs = np.log(rows["over_slerp"]).groupby(rows["scheme"]).mean()
+    return [str(name) for name in logs.sort_values().index]
+
+
+def _text(ratio: float) -> str:
+    if np.isnan(ratio):
+        return ""
+    if ratio < 0.005:
+        return "<.01"
+    return f"{ratio:.2f}".lstrip("0") if ratio < 9.95 else f"{ratio:.0f}"
+
+
+def _title(name: str, filter: str) -> str:
+    if name != ALL:
+        return name
+    return "as recorded" if filter == RAW else f"below {filter}"
+
+
+def caption(table: pd.DataFrame) -> str:
+    clips = sorted(set(table["clip"]) - {ALL, *CONTROLS})
+    made = " No recorded clip was given: this is the project's own walk." if clips == [OWN] else ""
+    return (
+        f"Rms angle of joints at the frames left out when every 2nd, 4th, ... frame is kept, over slerp's, geometric "
+        f"mean ({len(clips)} clips): below 1 (blue) is better than slerp. Recordings as they are, low-pass filtered, "
+        f"and two controls, motion without noise and noise without motion.{made}"
+    )

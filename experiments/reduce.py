@@ -1,0 +1,136 @@
+"""How many keyframes each scheme needs to rebuild recorded motion within an angle."""
+
+from functools import cache, partial
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator
+
+from quatspline import catalogue
+from quatspline.figures import style
+from quatspline.instruments.reconstruction import truth
+from quatspline.instruments.reduction import reduction
+from quatspline.instruments.summary import ALL, compared
+from quatspline.instruments.trials import Row, attempted
+from quatspline.motion import Motion
+from quatspline.runs.experiment import Run, crossed
+from quatspline.trajectories.clips import OWN, clip, names
+
+TITLE = "Keyframes that recorded motion needs"
+PAPER = False
+KEYS = ["clip", "filter", "error_degrees", "scheme"]
+FRAMES, QUICK = 600, 240
+"""Of a clip at most so many, from its middle; fewer at quick size."""
+NOTE = (
+    "Keyframes of a dense motion are taken in at the worst frame and out again where the others do without, joint by "
+    "joint, until the scheme rebuilds every frame within error_degrees. Clips and what is left out of them are those "
+    f"of the experiment reconstruct; of a clip the middle {FRAMES} frames are taken ({QUICK} at quick size). "
+    "keyframes: of all joints that did not fail; share: of their frames; per_second: keyframes of a joint a second; "
+    "over_slerp: a joint's keyframes over slerp's, geometric mean over the compared joints, on which all schemes ran; "
+    "most_over_slerp: the largest; lower is better. Greedy: fewer may do. Only schemes of this package are tried that "
+    f"are cheap to set up, unless others are asked for. Without recorded clips there is '{OWN}' alone, which the "
+    "project's generator made."
+)
+FORMATS = {
+    "share": ".3f",
+    "per_second": ".2f",
+    "over_slerp": ".3f",
+    "most_over_slerp": ".3f",
+    "largest_degrees": ".3f",
+}
+RAW = "none"
+CUTOFFS = {RAW: None, "10 Hz": 10.0}
+ERRORS, ERRORS_QUICK = (0.25, 0.5, 1.0, 2.0, 4.0), (0.5, 2.0)
+SLERP = "slerp"
+SHOWN = ("slerp", "squad", "quartic", "quintic", "local-quintic", "kim", "biarc")
+"""In the figure: of schemes that need the same, one."""
+
+
+def cells(run: Run) -> list[dict[str, Any]]:
+    errors = ERRORS_QUICK if run.quick else ERRORS
+    schemes = [*dict.fromkeys([SLERP, *_concerned(run)])]
+    return crossed(clip=names(), filter=CUTOFFS, error_degrees=errors, scheme=schemes)
+
+
+def _concerned(run: Run) -> list[str]:
+    """Schemes that are cheap to set up hundreds of times a joint."""
+    known = {name: catalogue.scheme(name) for name in catalogue.schemes()}
+    cheap = [n for n, c in known.items() if c.peer is None and c.practical_keyframes is None]
+    return run.schemes or cheap
+
+
+def measure_cell(run: Run, clip: str, filter: str, error_degrees: float, scheme: str) -> list[Row]:
+    measured = partial(_measured, run, clip, filter, error_degrees, scheme)
+    return attempted(measured, clip=clip, filter=filter, error_degrees=error_degrees, scheme=scheme)
+
+
+def _measured(run: Run, clip: str, filter: str, error_degrees: float, scheme: str) -> list[Row]:
+    tracks = _tracks(clip, filter, QUICK if run.quick else FRAMES)
+    return [reduction(tracks, scheme, float(np.radians(error_degrees)))]
+
+
+@cache
+def _tracks(name: str, filter: str, frames: int) -> Motion:
+    tracks = truth(clip(name), CUTOFFS[filter]).tracks
+    first = max(0, (len(tracks.times) - frames) // 2)
+    return tracks.frames(slice(first, first + frames))
+
+
+def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
+    return compared(table, KEYS, SLERP)
+
+
+# -- the figure ---------------------------------------------------------------------------------
+
+
+def draw(table: pd.DataFrame) -> Figure:
+    filters = [each for each in CUTOFFS if (table["filter"] == each).any()]
+    fig, panels = style.axes(style.PAGE, 3.4, 1, 2 * len(filters))
+    panels[0, len(filters) - 1].sharey(panels[0, 0])
+    panels[0, -1].sharey(panels[0, len(filters)])
+    for k, each in enumerate(filters):
+        rows = table[(table["filter"] == each) & table["scheme"].isin(SHOWN)]
+        shares, ratios = panels[0, k], panels[0, len(filters) + k]
+        _lines(shares, _shares(rows))
+        _lines(ratios, rows[rows["clip"] == ALL].set_index("error_degrees"), "over_slerp")
+        title = "as recorded" if each == RAW else f"below {each}"
+        shares.set(title=title, yscale="log", ylabel="keyframes per frame" if k == 0 else "")
+        ratios.set(title=title, ylabel="keyframes over slerp's" if k == 0 else "")
+        shares.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        shares.yaxis.set_major_formatter("{x:g}")
+    for ax in panels[0]:
+        ax.set_xscale("log")
+        ax.set_xticks(sorted(table["error_degrees"].unique()), labels=None)
+        ax.xaxis.set_major_formatter("{x:g}")
+        ax.minorticks_off()
+        ax.set_xlabel("allowed error (degrees)")
+    style.letters(panels[0])
+    style.legend_of(fig, panels[0, 0], len(SHOWN))
+    return fig
+
+
+def _shares(rows: pd.DataFrame) -> pd.DataFrame:
+    """Keyframes over frames, of all clips."""
+    clips = rows[(rows["clip"] != ALL) & rows["keyframes"].notna()]
+    sums = clips.groupby(["error_degrees", "scheme"])[["keyframes", "frames"]].sum().reset_index()
+    sums["share"] = sums["keyframes"] / sums["frames"]
+    return sums.set_index("error_degrees")
+
+
+def _lines(ax: Any, rows: pd.DataFrame, column: str = "share") -> None:
+    for name in SHOWN:
+        own = rows.loc[rows["scheme"] == name, column]
+        if own.notna().any():
+            ax.plot(own.index, own, label=name, **style.scheme_style(name))
+
+
+def caption(table: pd.DataFrame) -> str:
+    clips = sorted(set(table["clip"]) - {ALL})
+    made = " No recorded clip was given: this is the project's own walk." if clips == [OWN] else ""
+    return (
+        "Keyframes that greedy reduction keeps of recorded motion against the error that is allowed at every frame, "
+        f"joint by joint ({len(clips)} clips): their share of all frames, and their number over that of slerp, "
+        f"geometric mean over joints. Recordings as they are, and low-pass filtered.{made}"
+    )
