@@ -23,9 +23,10 @@ from quatspline.kernels.jit import compiled, inlined
 from quatspline.kernels.quick import log
 from quatspline.kernels.scalars import FITTED, series, sinc
 from quatspline.kernels.values import (
-    Mat,
     Vec,
+    mat_at,
     polar_exp,
+    put_mat,
     put_quat_column,
     put_vec,
     quat_column,
@@ -159,22 +160,6 @@ def _turn_back(jet, k, v):
 
 
 @inlined
-def put_block(sheet, first, j, m):
-    """Write a block down column j of the sheet, from a row on."""
-    c = sheet[first:, j]
-    put_vec(c, 0, m.a)
-    put_vec(c, 3, m.b)
-    put_vec(c, 6, m.c)
-
-
-@inlined
-def block(sheet, first, j):
-    """The block in column j of the sheet, from a row on."""
-    c = sheet[first:, j]
-    return Mat(vec_at(c, 0), vec_at(c, 3), vec_at(c, 6))
-
-
-@inlined
 def set_knot_blocks(start, count, m, p, w, jets, sheet):
     """How K_k changes in its own left frame: dK = (P_k d(w_{k+1}) - M_k d(w_k)) K; here
 
@@ -185,7 +170,7 @@ def set_knot_blocks(start, count, m, p, w, jets, sheet):
     for k in range(count):
         turn = _turn_back(before, k, m[k] * _column(w, k))
         left = _jacobian(after, k, p[k], -_column(w, k + 1))
-        put_block(sheet, UPPER, k, turn * left)
+        put_mat(sheet[UPPER:, k], 0, turn * left)
 
 
 @inlined
@@ -197,10 +182,11 @@ def set_row_blocks(start, count, m, w, jets, sheet):
         step = _column(w, k + 1)
         back = _turn_back(whole, k, step)
         own = _jacobian(whole, k, 1.0, step) - _jacobian(before, k + 1, m[k + 1], step)
-        own = own - back * block(sheet, UPPER, k)  # read before anything is written, to vectorise
+        # read before anything is written, to vectorise
+        own = own - back * mat_at(sheet[UPPER:, k], 0)
         lower = back * _jacobian(before, k, m[k], _column(w, k))
-        put_block(sheet, LOWER, k, lower)
-        put_block(sheet, OWN, k, own)
+        put_mat(sheet[LOWER:, k], 0, lower)
+        put_mat(sheet[OWN:, k], 0, own)
 
 
 @compiled
@@ -219,8 +205,8 @@ def assemble(problem, x, work):
         set_knot_blocks(start, count + 1, m, p, w, jets, sheet)
         set_row_blocks(start, count, m, w, jets, sheet)
         for j in range(count):
-            lower, own = block(sheet, LOWER, j), block(sheet, OWN, j)
-            upper, rhs = block(sheet, UPPER, j + 1), vec_at(misses[start + j], 0)
+            lower, own = mat_at(sheet[LOWER:, j], 0), mat_at(sheet[OWN:, j], 0)
+            upper, rhs = mat_at(sheet[UPPER:, j + 1], 0), vec_at(misses[start + j], 0)
             forward(start + j, n, sign != 0.0, lower, own, upper, rhs, work)
     backward(n, sign != 0.0, work)
 
