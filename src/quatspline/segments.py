@@ -66,7 +66,7 @@ class SegmentCurve(Curve):
 
         Rates have kernels of their own, each of which is compiled once its work repays it.
         """
-        return "compiled" if self._compiled[0] else "python"
+        return "compiled" if self._compiled[0] or self._repays(0, 0) else "python"
 
     def _solve(
         self, kernel: Kernel, parameters: FloatArray | None = None, *, whole: bool = False
@@ -167,7 +167,7 @@ class SegmentCurve(Curve):
             raise ValueError(f"segments has shape {segments.shape}: expected {shape}")
         self.kernels = self.family.near if reach <= NEAR else self.family.far
         # By order: that the kernel of one is there says nothing of what compiling another costs.
-        self._compiled = [self._refused or engine.compiles(0.0, k) for k in self.kernels]
+        self._compiled: list[bool | None] = [self._refused or None] * len(self.kernels)
         self._work = [0.0] * len(self.kernels)
         self._sample = None  # it was told where other constants are
 
@@ -217,12 +217,17 @@ class SegmentCurve(Curve):
     # -- engines --------------------------------------------------------------------------------
 
     def _repays(self, order: int, samples: int) -> bool:
-        """Count samples of an order in plain Python, and whether they repay compiling its kernel."""
-        work = samples * self.segments.shape[0]
+        """Count samples of an order, and whether its kernel takes them: it is there, or they repay it.
+
+        A curve keeps to what it began with, plain Python until its own work repays compiling.
+        """
+        kernel, work = self.kernels[order], samples * self.segments.shape[0]
         self._work[order] += work
-        self.kernels[order].work += work
-        self._compiled[order] = engine.compiles(self._work[order])
-        return self._compiled[order]
+        kernel.work += work
+        begins = self._compiled[order] is None
+        compiled = engine.compiles(self._work[order], kernel if begins else None)
+        self._compiled[order] = compiled
+        return compiled
 
     def _run(self, name: str, compiled: bool, *arguments: Any) -> Any:
         """A function of `plain`, or of `native`."""
