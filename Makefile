@@ -5,9 +5,11 @@ BIN := $(VENV)/bin
 RUN := $(BIN)/python -m quatspline
 PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check install --constraint requirements.lock
 QUICK ?=
-NAME ?=
 COMPILED ?=
-TASK ?=
+# Text that reaches a command as it was given, through the environment: neither make nor a shell reads it.
+override NAME := $(value NAME)
+override TASK := $(value TASK)
+export NAME TASK
 
 .DEFAULT_GOAL := help
 .PHONY: help reproduce benchmark benchmark-speed report test docs lint format new-baseline check-baseline reference lock clean
@@ -39,7 +41,7 @@ benchmark-speed: $(VENV)/test ## The speed suite (pytest-benchmark) as times the
 	@$(BIN)/python -m pytest benchmarks -q --benchmark-only --benchmark-autosave --benchmark-compare \
 	  --benchmark-storage=file://results/benchmarks --benchmark-columns=median,iqr,rounds \
 	  --benchmark-max-time=0.3 --benchmark-min-rounds=3 \
-	  -W ignore::pytest_benchmark.logger.PytestBenchmarkWarning $(if $(TASK),-k '$(TASK)')
+	  -W ignore::pytest_benchmark.logger.PytestBenchmarkWarning $${TASK:+-k "$$TASK"}
 
 report: $(VENV)/run ## Write results/report.html again from the tables that are there
 	@$(RUN) report
@@ -60,10 +62,10 @@ format: $(VENV)/test ## Format the sources
 	@$(BIN)/ruff check --quiet --fix . ; $(BIN)/ruff format --quiet .
 
 new-baseline: $(VENV)/run ## Write a working template: NAME=my_scheme (COMPILED=1: with a compiled family)
-	@$(BIN)/python -m tools.new_scheme '$(NAME)' $(if $(COMPILED),--compiled)
+	@$(BIN)/python -m tools.new_scheme "$$NAME" $(if $(COMPILED),--compiled)
 
 check-baseline: $(VENV)/test ## Conformance and claims of one scheme: NAME=my_scheme
-	@$(BIN)/python -m pytest -q tests/schemes/test_conformance.py tests/schemes/test_claims.py --scheme '$(NAME)'
+	@$(BIN)/python -m pytest -q tests/schemes/test_conformance.py tests/schemes/test_claims.py --scheme "$$NAME"
 
 reference: $(VENV)/run ## Take the tables of the last run as the reference and quote them in the README
 	@$(BIN)/python -m tools.readme --adopt results

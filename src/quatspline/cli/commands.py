@@ -1,7 +1,7 @@
 """The command line: list, run, compare, sample, reduce, info, report, warmup.
 
 Exit status: 0 done; 1 something unforeseen failed; 2 bad usage or bad input, told in one line on
-stderr; 130 interrupted.  Whatever is slow to import waits until a command needs it.
+stderr; 128 + n ended by signal n.  Whatever is slow to import waits until a command needs it.
 """
 
 from __future__ import annotations
@@ -13,12 +13,14 @@ import sys
 import traceback
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from quatspline.cli.arguments import REFUSED, parser
 from quatspline.cli.notes import note
 from quatspline.system.atomic import naming
+from quatspline.system.ending import Ended, ending
 from quatspline.system.stdout import STDOUT, say
 
 if TYPE_CHECKING:
@@ -53,15 +55,16 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         arguments = parser().parse_args(given)
         arguments.command = ["quatspline", *given]
-        status = COMMANDS[arguments.name](arguments)
-        with naming(STDOUT):
-            sys.stdout.flush()
+        with ending(partial(_interrupted, arguments.name)):
+            status = COMMANDS[arguments.name](arguments)
+            with naming(STDOUT):
+                sys.stdout.flush()
         return status
     except SystemExit as stop:  # argparse: help, version, bad usage
         return stop.code if isinstance(stop.code, int) else FAILED
-    except KeyboardInterrupt:
-        hint = ": the same command goes on where it stopped" if given[:1] == ["run"] else ""
-        return _told(f"interrupted{hint}", INTERRUPTED)
+    except KeyboardInterrupt as interrupt:
+        status = interrupt.status if isinstance(interrupt, Ended) else INTERRUPTED
+        return _interrupted(given[0] if given else "", status)
     except BrokenPipeError:  # the reader has seen enough
         _give_up_stdout()
         return DONE
@@ -69,6 +72,11 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _told(str(error), REFUSED)
     except Exception as error:
         return _unforeseen(error)
+
+
+def _interrupted(command: str, status: int) -> int:
+    hint = ": the same command goes on where it stopped" if command == "run" else ""
+    return _told(f"interrupted{hint}", status)
 
 
 def _give_up_stdout() -> None:

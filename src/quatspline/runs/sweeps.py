@@ -31,6 +31,7 @@ from quatspline.engines.engine import always_compiled
 from quatspline.runs import experiment
 from quatspline.runs.experiment import Run
 from quatspline.runs.journal import Cell, Kept, key
+from quatspline.system.ending import bind_to, hang_up_ignored
 from quatspline.trajectories import clips
 
 if TYPE_CHECKING:
@@ -95,7 +96,14 @@ def _side_by_side(name: str, run: Run, cells: Sequence[Cell]) -> Iterator[Done]:
     from joblib.externals.loky.process_executor import TerminatedWorkerError
 
     environment = _environment()
-    shared = (name, run, environment, _sources(*environment.items()), catalogue.schemes())
+    shared = (
+        os.getpid(),
+        name,
+        run,
+        environment,
+        _sources(*environment.items()),
+        catalogue.schemes(),
+    )
     left = dict(enumerate(cells))
     while left:
         begun: set[int] = set()
@@ -143,8 +151,11 @@ def workers(jobs: int | None = None, dask: str | None = None) -> Iterator[None]:
         Without the extra "dask", a scheduler at the address, or a worker of it.
     """
     from joblib import parallel_config
+    from joblib.externals.loky.backend import resource_tracker
 
     if dask is None:
+        with hang_up_ignored():  # it cleans up after all others, SIGINT and SIGTERM notwithstanding
+            resource_tracker.ensure_running()
         # One thread a process: the cores are shared out already, and sums do not regroup.
         with parallel_config("loky", n_jobs=jobs or -1, inner_max_num_threads=1):
             yield
@@ -182,6 +193,7 @@ library that bears no threads, must not share it."""
 
 def _measured_elsewhere(
     place: int,
+    starter: int,
     name: str,
     run: Run,
     environment: dict[str, str],
@@ -190,6 +202,7 @@ def _measured_elsewhere(
     cell: Cell,
 ) -> Done:
     """A cell in another process, which finds the same files as the one that asks."""
+    bind_to(starter)
     with _measuring:
         os.environ.update(environment)
         if _sources(*environment.items()) != sources:
