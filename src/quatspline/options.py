@@ -152,11 +152,11 @@ def _check(name: str, value: Any, kind: Any) -> None:
 
 
 def _check_any(name: str, value: Any, kinds: tuple[Any, ...]) -> None:
-    """One of several kinds has to fit; the refusal is that of the first."""
+    """One of several kinds has to fit; the refusal is that of the first, or for a word that of the words."""
     if value is None and type(None) in kinds:
         return
     refusals = []
-    for kind in kinds:
+    for kind in sorted(kinds, key=lambda kind: _takes_words(kind) != isinstance(value, str)):
         if kind is type(None):
             continue
         try:
@@ -166,6 +166,10 @@ def _check_any(name: str, value: Any, kinds: tuple[Any, ...]) -> None:
         else:
             return
     raise refusals[0]
+
+
+def _takes_words(kind: Any) -> bool:
+    return get_origin(kind) is Literal and any(isinstance(x, str) for x in get_args(kind))
 
 
 def _is_finite(value: Any) -> bool:

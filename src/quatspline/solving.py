@@ -22,7 +22,8 @@ class SolveReport:
     iterations : updates made, the accepting one included
     change : relative change of all control quaternions by the last update
     residual : largest miss at a keyframe, a rotation angle in rad: by the equations or by the finished
-        curve, measured on both sides, whichever is larger; infinite where it is no number
+        curve, measured on both sides, whichever is larger; infinite where it is no number; of a curve near
+        its keyframes, the last turn of the poses that it was solved for
     converged : whether the stop rule was met at a right solution
     tolerance : what was asked for
 

@@ -22,7 +22,7 @@ def twice(x):
 def loads(folder: Path) -> bool:
     """Whether code that a fresh process would run was loaded; what it returns is right either way."""
     function: Any = numba.njit(twice)
-    function._cache = disk.cached_in(folder, twice)
+    disk.keep(function, twice, folder)
     assert function(1.5) == 3.0
     return bool(function.stats.cache_hits)
 
@@ -90,12 +90,24 @@ def test_nothing_is_unpickled_that_does_not_match_its_hash(folder: Path) -> None
     assert not loads(folder)
 
 
+def test_code_that_cannot_be_linked_here_is_compiled_again(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(*_: Any) -> None:
+        raise ModuleNotFoundError("quatspline_baseline_of_another_checkout")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(disk.caching.CompileResultCacheImpl, "rebuild", fails)
+        assert not loads(folder)
+    assert loads(folder)
+
+
 def test_where_nothing_can_be_written_code_stays_in_memory_and_one_warning_names_the_folder(
     tmp_path: Path,
 ) -> None:
     base = tmp_path / "file"
     base.write_text("no folder can be made below a file")
-    disk._tell.cache_clear()
+    disk.tell.cache_clear()
     with pytest.warns(RuntimeWarning, match="not kept for the next process") as told:
         assert not any(loads(base / "a") for _ in range(2))
     assert len(told) == 1

@@ -158,6 +158,19 @@ def test_a_deviation_counts_where_none_is_claimed(monkeypatch, claim, segment, r
     assert row["relative"] == pytest.approx(0.01)
 
 
+def test_keyframes_are_no_truth_to_a_curve_that_passes_near_them(monkeypatch):
+    class Far(Toy):
+        def _orientation(self, t):
+            away = quaternion.exp([1.0, 0.0, 0.0])  # more than half of any step
+            return quaternion.mul(self.slerped(*self.keyframes.locate(t)), away)
+
+    for interpolates, results in ((True, ("wrong", "wrong")), (False, ("wrong", "as claimed"))):
+        cls = type("_", (Far,), {"interpolates": interpolates, "name": "toy"})
+        monkeypatch.setattr(module, "scheme", lambda name, cls=cls: cls)
+        cases = ("sign-flipped", "there and back")
+        assert tuple(edge_result(CASES[case], "toy")["result"] for case in cases) == results
+
+
 def test_a_missed_keyframe_is_a_fault_unless_none_is_met(monkeypatch):
     class Off(Toy):
         def _orientation(self, t):

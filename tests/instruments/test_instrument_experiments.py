@@ -27,7 +27,18 @@ COLUMNS = {
         "claimed_k",
         "least_key_speed",
     },
+    "denoise": {"clip", "every", "noise_degrees", "over_slerp", "told_degrees", "omega"},
     "edge-cases": {"case", "result", "checked", "deviation", "failure"},
+    "excursion": {
+        "data",
+        "segments",
+        "off_median",
+        "over_worst",
+        "back_q95",
+        "overshot",
+        "wander_worst",
+        "failure",
+    },
     "fairness": {
         "data",
         "sets",

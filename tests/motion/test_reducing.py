@@ -71,6 +71,11 @@ def test_a_solver_that_fails_names_the_joint() -> None:
         figure(60).reduce("nielson", error=1e-5, max_iterations=1, tolerance=1e-14)
 
 
+def test_a_scheme_that_passes_near_keyframes_keeps_no_bound() -> None:
+    with pytest.raises(ValueError, match=r"^smoothing-spline passes near its keyframes"):
+        figure(20).reduce("smoothing-spline", error=0.1)
+
+
 @pytest.mark.parametrize("error", [0, -1, np.nan, np.inf, "1deg"])
 def test_wrong_bounds_are_refused(error: object) -> None:
     with pytest.raises(ValueError, match="a positive angle in rad"):

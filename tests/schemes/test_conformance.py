@@ -136,7 +136,7 @@ def test_a_sample_does_not_depend_on_its_neighbours(scheme: Scheme) -> None:
         assert np.array_equal(np.sort(together, axis=0), np.sort(curve(np.sort(t), order), axis=0))
 
 
-@applies(lambda scheme: scheme.iterative)
+@applies(lambda scheme: scheme.iterative and scheme.interpolates)
 def test_the_residual_is_what_the_curve_misses(scheme: Scheme) -> None:
     curve = curve_of(scheme, None, walk(count_of(scheme), 90.0), tolerance=1e-8)
     report = curve.solve_report

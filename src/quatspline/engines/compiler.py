@@ -21,7 +21,7 @@ from numba.core import types
 from numba.core.ccallback import CFunc
 from numba.core.compiler_lock import global_compiler_lock
 
-from quatspline.engines.disk import cached_in
+from quatspline.engines.disk import keep
 from quatspline.kernels.jit import BLOCK, INLINED, ROOMS, ROWS, Compiled, Kernel, rows_of
 from quatspline.kernels.values import Mat, Quat, Vec
 from quatspline.system import forking
@@ -55,7 +55,7 @@ def machine(function: Compiled) -> Any:
             if function.machine is None:  # another thread may have been here first
                 _teach_functions()
                 made: Any = numba.njit(nogil=True, **SETTINGS)(function.python)
-                made._cache = _cache_of(function.python)
+                _keep(made, function.python)
                 function.machine = made
     return function.machine
 
@@ -68,15 +68,15 @@ def address(kernel: Kernel) -> int:
                 _teach_functions()
                 kind = SIGNATURES[kernel.kind]
                 made: Any = CFunc(kernel.python, (kind.args, kind.return_type), {}, dict(SETTINGS))
-                made._cache = _cache_of(kernel.python)
+                _keep(made, kernel.python)
                 made.compile()
                 kernel.machine = made
             kernel.address = int(kernel.machine.address)
     return kernel.address
 
 
-def _cache_of(function: Callable[..., Any]) -> Any:
-    return cached_in(cache_folder(Path(function.__code__.co_filename)), function)
+def _keep(made: Any, function: Callable[..., Any]) -> None:
+    keep(made, function, cache_folder(Path(function.__code__.co_filename)))
 
 
 @cache

@@ -58,11 +58,12 @@ def _save(path: Path, content: bytes) -> None:
         with replacing(path) as aside:
             aside.write_bytes(hashlib.sha256(content).digest() + content)
     except OSError as error:
-        _tell(path.parents[1], error.strerror or str(error))
+        tell(path.parents[1], error.strerror or str(error))
 
 
 @cache
-def _tell(base: Path, reason: str) -> None:
+def tell(base: Path, reason: str) -> None:
+    """Warn once in this process that a folder cannot be written, and why."""
     if parent_process() is None:  # which of many workers tells does not matter to the user
         told = f"compiled kernels are not kept for the next process: {base} cannot be written: {reason}"
         warnings.warn(told, RuntimeWarning, stacklevel=2)
@@ -87,20 +88,26 @@ class _Folder:
         return str(self.line)
 
 
-def cached_in(folder: Path, function: Callable[..., Any]) -> caching.FunctionCache:
-    """numba's cache of a function's code, in files of ours in a folder that is named after its sources."""
+def keep(made: Any, function: Callable[..., Any], folder: Path) -> None:
+    """Have numba keep the code that it made of a function in a folder that is named after the sources."""
 
     class Implementation(caching.CompileResultCacheImpl):
         def __init__(self, function: Callable[..., Any]) -> None:
             code = function.__code__
             self._lineno = code.co_firstlineno
             self._locator = _Folder(folder, self._lineno)
-            name = f"{Path(code.co_filename).stem}.{function.__qualname__}"
+            # Code names its module, which a file loaded by path has after its place.
+            name = f"{function.__module__}.{function.__qualname__}"
             self._filename_base = self.get_filename_base(name, "")
 
     class Cache(caching.FunctionCache):
         _impl_class = Implementation
 
-    made = Cache(function)
-    made._cache_file = _Files(str(folder), made._impl.filename_base, folder.name)
-    return made
+        def _load_overload(self, *wanted: Any) -> Any:
+            try:
+                return super()._load_overload(*wanted)
+            except Exception:  # whole, and yet of names that this process has not: compiled again
+                return None
+
+    made._cache = Cache(function)
+    made._cache._cache_file = _Files(str(folder), made._cache._impl.filename_base, folder.name)

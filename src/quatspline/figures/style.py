@@ -27,6 +27,7 @@ OWN: dict[str, dict[str, Any]] = {
     "nielson": {"color": BLUE, "marker": "s"},
     "kim": {"color": "#009e73", "marker": "^"},
     "local-quintic": {"color": "#000000", "marker": "D"},
+    "monotone-quintic": {"color": "#5d3a9b", "marker": "P"},
     "quintic": {"color": "#d55e00", "marker": "v"},
     "slerp": {"color": "#8a8a8a", "marker": "x"},
     "min-torque": {"color": "#b8860b", "marker": "*"},

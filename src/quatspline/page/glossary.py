@@ -91,6 +91,19 @@ GLOSSARY: dict[str, Column] = {
     "fairness.peak_median": Column(
         "median of peak acceleration over that of the minimum", "", "less"
     ),
+    **{
+        f"{share}_{level}": Column(f"{word} of {what}, over the step", "", "less")
+        for share, what in (
+            ("off", "the distance to the arc between keyframes"),
+            ("over", "the way beyond the ends of a step"),
+            ("back", "the way back within a step"),
+        )
+        for level, word in (("median", "median"), ("q95", "95 % quantile"), ("worst", "worst"))
+    },
+    "overshot": Column("share of steps overshot by more than 1 %", "", "less"),
+    "over_degrees": Column("worst way beyond the ends of a step", "degrees", "less"),
+    "wander_median": Column("median angle from the keyframe during a hold", "degrees", "less"),
+    "wander_worst": Column("largest angle from the keyframe during a hold", "degrees", "less"),
     "choosing.order": Column("order of convergence, uniform times", "", "more"),
     "choosing.support": Column("keyframes that shape a segment"),
     "smooth_k": Column("k of C^k at steps of 60 degrees", "", "more"),

@@ -59,6 +59,12 @@ RANKINGS: dict[str, Ranking] = {
         False,
         "the median over the committed keyframe sets of the torque energy over the least possible; less is better",
     ),
+    "excursion": Ranking(
+        "wander_worst",
+        False,
+        "the largest angle from the keyframe during a hold ten times as long as the moves beside it; less is better",
+        {"data": "hold 10 : 1"},
+    ),
     "claims": Ranking("verdict", False, "the verdict: what departs comes first"),
 }
 
@@ -195,6 +201,12 @@ SECTIONS: tuple[Section, ...] = (
         "Fairness",
         "How much more a curve turns and accelerates than it must.",
         ("fairness",),
+    ),
+    Section(
+        "excursion",
+        "Excursion",
+        "How far curves overshoot their keyframes, and how far they wander where keyframes hold still.",
+        ("excursion",),
     ),
     Section(
         "robustness",

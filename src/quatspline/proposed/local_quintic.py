@@ -6,10 +6,9 @@ from typing import Annotated
 
 import numpy as np
 
-from quatspline.families.rotation_vector import ROTATION_VECTOR, set_end_rates
-from quatspline.fitting.local_rates import chords, continued, local_rates
-from quatspline.kernels.jit import REACH, fit_kernel, inlined
-from quatspline.kernels.values import put_vec, quat_at, vec_at
+from quatspline.families.rotation_vector import ROTATION_VECTOR
+from quatspline.fitting.joined_rates import join, steps_and_rates
+from quatspline.kernels.jit import REACH, fit_kernel
 from quatspline.keyframes import Keyframes
 from quatspline.operations import Operations, Per
 from quatspline.options import AtMost, Count
@@ -56,26 +55,5 @@ class LocalQuinticSpline(SegmentCurve):
 @fit_kernel
 def FIT(q, h, closed, sign, parameters, segments, report):
     """Constants of every segment; parameters[0] is the window m."""
-    n, m = q.shape[0], int(parameters[0])
-    first = m if closed else 0
-    points, gaps = continued(q, h, closed, sign, m)
-    x = np.empty((m, 4, points.shape[0]))
-    chords(points, x)
-    rates = np.empty((n, 6))
-    for i in range(n):
-        v, a = local_rates(x, gaps, closed, first + i)
-        put_vec(rates[i], 0, v)
-        put_vec(rates[i], 3, a)
-    reach = 0.0
-    for i in range(h.size):
-        base, step = quat_at(q[i], 0), vec_at(x[0, :, first + i], 0)
-        start = _by_u(rates[i], h[i])
-        stop = _by_u(rates[(i + 1) % n], h[i])
-        reach = max(reach, set_end_rates(segments[i], base, step, *start, *stop))
-    report[REACH] = reach
-
-
-@inlined
-def _by_u(rates, h):
-    """h v and h^2 a."""
-    return h * vec_at(rates, 0), (h * h) * vec_at(rates, 3)
+    steps, rates = steps_and_rates(q, h, closed, sign, int(parameters[0]))
+    report[REACH] = join(q, h, steps, rates, segments)

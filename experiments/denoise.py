@@ -1,0 +1,166 @@
+"""What smoothing buys where keyframes are noisy, and where it buys nothing: on motion that is known and on clips."""
+
+from functools import cache, partial
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from quatspline.figures import style
+from quatspline.instruments.denoising import KNOWN, denoising, disturbed
+from quatspline.instruments.reconstruction import truth
+from quatspline.instruments.summary import ALL, compared
+from quatspline.instruments.trials import Row, attempted
+from quatspline.motion import Motion
+from quatspline.quaternion import FloatArray
+from quatspline.runs.experiment import Run, crossed
+from quatspline.trajectories.clips import OWN, clip, names, tumbling
+from quatspline.trajectories.smooth import tumble_rates
+
+TITLE = "Noisy keyframes, with and without smoothing"
+PAPER = False
+KEYS = ["clip", "every", "noise_degrees", "scheme"]
+NOTE = (
+    "Of dense motion every so many-th frame and the last are kept, and white rotation errors of the standard deviation "
+    "noise_degrees about each axis are added to them; the frames left out, without added noise, are what curves are "
+    "held against. 'tumble' is analytic: several draws of the noise stand for joints, and its truth is exact; clips "
+    f"are recordings (the project's own '{OWN}' where QUATSPLINE_MOTIONS names none), whose held-out frames have "
+    f"noise of their own. '{ALL}' takes the joints of all clips together. rms_degrees: a joint's rms angle, median "
+    "over joints; worst_degrees: the largest; keyframes_degrees: the same at the keyframes, which an interpolant "
+    "misses by the noise itself, sqrt(3) noise_degrees; over_slerp: a joint's rms angle over slerp's, geometric mean, "
+    "most_over_slerp: the largest; omega: rms error of the angular velocity, degrees a second, of the tumble; "
+    "told_degrees: the noise as estimated from the keyframes alone. Lower is better but for told_degrees, which should "
+    "be noise_degrees. smoothing-spline chooses its weight by itself, by cross-validation (', gcv') or for the noise "
+    "that was added (', told'), where some was."
+)
+FORMATS = {
+    **dict.fromkeys(("rms_degrees", "worst_degrees", "keyframes_degrees", "told_degrees"), ".3f"),
+    **dict.fromkeys(("over_slerp", "most_over_slerp"), ".3f"),
+    "omega": ".3g",
+}
+SLERP, OURS = "slerp", "smoothing-spline"
+CHOSEN = (SLERP, "quartic", "squad", "local-quintic", "kim", OURS)
+WAYS: dict[str, dict[str, Any]] = {
+    f"{OURS}, gcv": {"smoothing": "gcv"},
+    f"{OURS}, told": {KNOWN: None},
+}
+"""Other ways to choose the weight, and their options: the noise is filled in."""
+TUMBLE = "tumble"
+SIGMAS, SIGMAS_QUICK = (0.0, 0.03, 0.1, 0.3, 1.0, 3.0), (0.0, 0.1, 0.3, 1.0)
+KEPT, KEPT_QUICK = (2, 4, 8), (8,)
+"""Of clips; of the tumble those that follow: 401, 101 and 26 keyframes."""
+TUMBLED, TUMBLED_QUICK = (3, 12, 48), (3, 12)
+DRAWS, DRAWS_QUICK = 20, 3
+
+
+def cells(run: Run) -> list[dict[str, Any]]:
+    """A clip's cells follow each other: a process reads it once."""
+    asked = list(dict.fromkeys([SLERP, *(run.schemes or CHOSEN)]))
+    schemes = asked + (list(WAYS) if OURS in asked else [])
+    sigmas = SIGMAS_QUICK if run.quick else SIGMAS
+    kept: dict[str, tuple[int, ...]] = {TUMBLE: TUMBLED_QUICK if run.quick else TUMBLED}
+    kept |= dict.fromkeys(names(), KEPT_QUICK if run.quick else KEPT)
+    found = [
+        cell
+        for name, counts in kept.items()
+        for cell in crossed(clip=(name,), every=counts, noise_degrees=sigmas, scheme=schemes)
+    ]
+    return [cell for cell in found if cell["noise_degrees"] or not _is_told(cell["scheme"])]
+
+
+def _is_told(scheme: str) -> bool:
+    return KNOWN in WAYS.get(scheme, {})
+
+
+def measure_cell(run: Run, clip: str, every: int, noise_degrees: float, scheme: str) -> list[Row]:
+    measured = partial(_measured, run, clip, every, noise_degrees, scheme)
+    case = {"clip": clip, "every": every, "noise_degrees": noise_degrees}
+    return attempted(measured, **case, scheme=scheme)
+
+
+def _measured(run: Run, clip: str, every: int, noise_degrees: float, scheme: str) -> list[Row]:
+    true, omega = _truth(clip, DRAWS_QUICK if run.quick else DRAWS)
+    noisy = disturbed(true, noise_degrees, run.rng("denoise", clip, every, noise_degrees))
+    options = dict(WAYS.get(scheme, {}))
+    if _is_told(scheme):
+        options[KNOWN] = float(np.radians(noise_degrees))
+    return [denoising(true, noisy, scheme.split(",")[0], every, omega, **options)]
+
+
+@cache
+def _truth(name: str, draws: int) -> tuple[Motion, FloatArray | None]:
+    """The true motion and, where it is known, its velocity (n, 3)."""
+    if name != TUMBLE:
+        return truth(clip(name)).tracks, None
+    one = tumbling()
+    q = np.repeat(one.quaternions, draws, axis=1)
+    return Motion(one.times, q, tracks=[f"draw {k}" for k in range(draws)]), tumble_rates(
+        one.times
+    )[0]
+
+
+def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
+    return compared(table, KEYS, SLERP, {TUMBLE})
+
+
+# -- the figure ---------------------------------------------------------------------------------
+
+PURPLE = "#5d3a9b"
+LOOKS: dict[str, dict[str, Any]] = {
+    OURS: {"color": PURPLE, "marker": "P"},
+    f"{OURS}, gcv": {"color": PURPLE, "marker": "", "linestyle": "--"},
+    f"{OURS}, told": {"color": PURPLE, "marker": "", "linestyle": ":"},
+}
+FLOOR = 0.01
+"""No noise is drawn at this (degrees)."""
+
+
+def draw(table: pd.DataFrame) -> Figure:
+    fig, axes = style.axes(style.PAGE, 2.9, 1, 3)
+    known, recorded = table[table["clip"] == TUMBLE], table[table["clip"] == ALL]
+    panels = (
+        (known, "rms_degrees", f"{TUMBLE}, {{n}} keyframes", "rms angle (deg)"),
+        (known, "omega", f"{TUMBLE}, {{n}} keyframes", "rms velocity error (deg/s)"),
+        (recorded, "over_slerp", "all clips, one frame in {every} kept", "rms angle over slerp's"),
+    )
+    for ax, (rows, column, title, label) in zip(axes[0], panels, strict=True):
+        dense = rows[rows["every"] == rows["every"].min()] if len(rows) else rows
+        _lines(ax, dense, column)
+        counts = dense["keyframes"].dropna()
+        facts = {"n": int(counts.max()) if len(counts) else 0, "every": dense["every"].min()}
+        ax.set(title=title.format(**facts), xlabel="noise about each axis (deg)", ylabel=label)
+        ax.set_xscale("symlog", linthresh=FLOOR)
+        ax.set_xlim(left=0.0)
+    for ax in axes[0, :2]:
+        ax.set_yscale("log")
+    axes[0, 2].axhline(1.0, color="#8a8a8a", linewidth=0.6)
+    style.letters(axes[0])
+    style.legend_of(fig, axes[0, 0], 4)
+    return fig
+
+
+def _lines(ax: Any, rows: pd.DataFrame, column: str) -> None:
+    for name in dict.fromkeys(rows["scheme"]):
+        own = rows[(rows["scheme"] == name) & rows[column].notna()].sort_values("noise_degrees")
+        ax.plot(own["noise_degrees"], own[column], label=name, **_look(name))
+
+
+def _look(name: str) -> dict[str, Any]:
+    return {
+        "markerfacecolor": "none",
+        "linestyle": "-",
+        **LOOKS.get(name, style.scheme_style(name)),
+    }
+
+
+def caption(table: pd.DataFrame) -> str:
+    clips = sorted(set(table["clip"]) - {ALL, TUMBLE})
+    made = " No recorded clip was given: this is the project's own walk." if clips == [OWN] else ""
+    return (
+        "Errors to the truth at frames left out against the white noise added to the keyframes: (a) of orientation "
+        "and (b) of angular velocity on a known motion, (c) of orientation on recordings as multiples of slerp's, "
+        f"geometric mean over joints ({len(clips)} clips). Interpolants pass the noise on; the smoothing spline "
+        "chooses by itself, by cross-validation (dashed) or for the noise as it is (dotted) how near to keep to its "
+        f"keyframes.{made}"
+    )
