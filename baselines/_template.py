@@ -32,6 +32,7 @@ class Template(Curve):
     #   interpolates = True          passes through its keyframes
     #   non_uniform = True           takes uneven times; where False, they are refused before `_fit`
     #   closable = True              has a closed curve; where False, closed=True is refused
+    #   lookahead = support / 2 - 1  keyframes after a segment's own two that shape it; None means all
     #   min_keyframes = 2            fewer are refused
     #   iterative = False            solves by iteration, and leaves a `solve_report`
     #   orders = (0, 1, 2)           of what a call offers: orientation, velocity, acceleration

@@ -1,5 +1,6 @@
 """Dense recorded motion, rebuilt from every so many-th frame: what schemes are worth on what people record."""
 
+from collections.abc import Sequence
 from functools import cache, partial
 from typing import Any
 
@@ -13,9 +14,11 @@ from quatspline.figures.heat import ROW, label_cells, log_heat
 from quatspline.instruments.reconstruction import EULER, Truth, rebuild, reconstruction, truth
 from quatspline.instruments.summary import ALL, compared
 from quatspline.instruments.trials import Row, attempted
+from quatspline.motion.replay import replay
 from quatspline.runs.experiment import Run, crossed
 from quatspline.timing.budget import OVER, Budget, calls, too_many
-from quatspline.trajectories.clips import CONTROLS, OWN, clip, names
+from quatspline.trajectories.clips import CONTROLS, OWN, clip, each_kind, names
+from quatspline.trajectories.credits import credit
 
 TITLE = "Recorded motion, rebuilt"
 PAPER = False
@@ -96,6 +99,27 @@ def _work(name: str, count: int, samples: tuple[int, int, int]) -> float:
 
 def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
     return compared(table, KEYS, SLERP, set(CONTROLS))
+
+
+# -- the player --------------------------------------------------------------------------------
+
+
+PLAYED, KEPT_PLAYED = ("slerp", "local-quintic", "kim", "squad", "quartic", "circular-blend"), 16
+"""Schemes that the page's player offers, and of which frames they make the motion."""
+
+
+def replays(run: Run) -> list[dict[str, Any]]:
+    return [each for name in each_kind() for each in _replay(name, run.schemes or PLAYED)]
+
+
+def _replay(name: str, schemes: Sequence[str]) -> list[dict[str, Any]]:
+    """A clip for the player; none where nothing moves, is left out or is rebuilt: its rows say so."""
+    motion, source = clip(name), credit(name)
+    try:
+        joints = _truth(name, RAW).compared.tolist()
+        return [replay(motion, schemes, KEPT_PLAYED, title=name, source=source, joints=joints)]
+    except ValueError:
+        return []
 
 
 # -- the figure ---------------------------------------------------------------------------------

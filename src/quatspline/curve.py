@@ -10,7 +10,7 @@ import operator
 import sys
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -29,6 +29,17 @@ from quatspline.solving import SolveReport
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
+
+
+class _BySupport:
+    """The lookahead of a window that reaches as far ahead of a segment as behind it.
+
+    No data descriptor: a class or an instance that has another one sets it like any claim.
+    """
+
+    def __get__(self, curve: Curve | None, cls: type[Curve]) -> int | None:
+        support = cls.support if curve is None else curve.support
+        return None if support is None else max(support // 2 - 1, 0)
 
 
 class Curve(abc.ABC):
@@ -83,6 +94,9 @@ class Curve(abc.ABC):
     """Interior approximation order on smooth motion, uniform knots."""
     support: int | None
     """Keyframes that shape one segment; None means all."""
+    lookahead: int | None = cast("int | None", _BySupport())
+    """Keyframes after a segment's own two that shape it; None means all.  Half of those beyond the two
+    that `support` counts, unless a scheme says otherwise."""
     constant_rate: str
     """Where keyframes of a constant spin give that spin: "everywhere", "interior" or "no"."""
     non_uniform: ClassVar[bool] = True

@@ -74,6 +74,8 @@ def _quartic() -> Iterator[Claim]:
     continuity = [Probe(probes.continuity, "quartic", count=n) for n in (4, 6)]
     yield claim("C2 at equidistant knots", "at least C2", continuity, partial(_above, 1))
     yield claim("not C3 at knots", "below C3", continuity, partial(_below, 2))
+    inside = [Probe(probes.inner_continuity, "quartic", n, d) for n in (4, 6) for d in (60, 120)]
+    yield claim("C-infinity inside segments", "C6 as far as told", inside, partial(_above, 5))
     yield claim("local control", 4, [Probe(probes.support, "quartic")], partial(_below, 4))
     torque = [Probe(probes.torque_ratio, "quartic", "nielson")]
     yield claim("less fair than the B-spline", "more torque", torque, partial(_above, 1.0))
@@ -113,6 +115,9 @@ def _constructions() -> Iterator[Claim]:
     said = "keyframes in reverse order give another curve [kim1996hermite]"
     reverse = [Probe(probes.reversal_deviation, "kim", degrees=d) for d in (60, 120)]
     yield Claim("kim", "paper", said, "another", reverse, partial(_above, SYMMETRIC))
+    said = "two arcs meet inside a segment: the acceleration jumps there"
+    inside = [Probe(probes.inner_continuity, "biarc", n) for n in (4, 6)]
+    yield Claim("biarc", "ours", said, "below C2", inside, partial(_below, 1))
     smooth = [continuity("squad", count=n) for n in (3, 4, 6)]
     yield Claim("squad", "paper", "C1 [shoemake1987]", "at least C1", smooth, partial(_above, 0))
 

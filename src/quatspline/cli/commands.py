@@ -35,7 +35,8 @@ CLAIMS: tuple[tuple[str, Callable[[Any], Any]], ...] = (
     ("C^k", lambda s: f"C{s.continuity}"),
     ("interpolates", lambda s: _yes(s.interpolates)),
     ("order", lambda s: str(s.order)),
-    ("support", lambda s: "all" if s.support is None else str(s.support)),
+    ("support", lambda s: _all_or(s.support)),
+    ("lookahead", lambda s: _all_or(s.lookahead)),
     ("constant rate", lambda s: s.constant_rate),
     ("uneven times", lambda s: _yes(s.non_uniform)),
     ("closes", lambda s: _yes(s.closable)),
@@ -129,6 +130,10 @@ def _claims(item: Found) -> list[str]:
     return [cell(show) for _, show in CLAIMS]
 
 
+def _all_or(keyframes: int | None) -> str:
+    return "all" if keyframes is None else str(keyframes)
+
+
 def _yes(claim: bool) -> str:
     return "yes" if claim else "no"
 
@@ -167,6 +172,7 @@ def _compare(arguments: argparse.Namespace) -> int:
     with results.writing():
         results.guard((compare if body else joints).FILES, inputs=[arguments.keyframes])
         common = {"schemes": schemes, "results": results, "call": arguments.command}
+        common |= {"name": Path(arguments.keyframes).name}
         if not body:
             return joints.command(motion, every=arguments.keep, **common)
         return compare.command(motion, closed=arguments.closed, every=arguments.keep, **common)

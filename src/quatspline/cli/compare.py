@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 FILES = [
     *(f"compare{end}" for end in (".csv", ".md", ".png", ".svg", ".caption.txt")),
     *(f"rates{end}" for end in (".png", ".svg", ".caption.txt")),
-    *("recommendation.md", "report.html"),
+    *("recommendation.md", "compare.replay.json", "report.html"),
 ]
 """What the command writes."""
 ERRORS = ("left_out_rms", "left_out_largest")
@@ -46,6 +46,7 @@ def command(
     results: Results,
     every: int | None = None,
     call: Sequence[str] = (),
+    name: str = "Your motion",
 ) -> int:
     """Serve ``quatspline compare``: tables, figures, the recommendation and the page in a folder.
 
@@ -54,8 +55,9 @@ def command(
     ValueError
         On bad keyframes, an unknown scheme, or files in the folder that are not its own.
     """
+    from quatspline.cli.played import played
     from quatspline.page import own_scene, write_page
-    from quatspline.page.sections import OWN
+    from quatspline.page.own_sections import OWN
 
     began = time.perf_counter()
     source, motion = motion, _kept(motion, every)
@@ -65,6 +67,7 @@ def command(
         table, curves = comparing.compared(keyframes, schemes)
         if every is not None:
             table = _with_errors(table, curves, source, every)
+            results.replays("compare", played(source, table, ERRORS[0], every, name))
     table = results.table(
         "compare",
         table,
@@ -75,6 +78,7 @@ def command(
     )
     found = _recommended(results, table)
     names = _drawn(results, table, curves, keyframes)
+    results.tidy("compare")  # without --keep there is no truth to play
     entry = {"title": comparing.TITLE, "size": f"{keyframes.count} keyframes", "seed": None}
     results.record("compare", entry | {"seconds": round(time.perf_counter() - began, 3)})
     results.finish()

@@ -56,7 +56,7 @@ def errors(
 
 
 def row(motion: Motion, scheme: str, every: int) -> dict[str, Any]:
-    """Errors of one scheme over the joints that turn: medians and the worst, by name."""
+    """Errors of one scheme over the joints that turn: medians and the worst, by name; all under "by_joint"."""
     began = time.perf_counter()
     curve = motion.curve(scheme, every=every)
     seconds = time.perf_counter() - began
@@ -74,6 +74,10 @@ def row(motion: Motion, scheme: str, every: int) -> dict[str, Any]:
         "largest_joint": motion.tracks[joints[farthest]],
         "end_rms": None if ends is None else float(np.sqrt((ends**2).mean())),
         "seconds": seconds,
+        "by_joint": [
+            {"joint": motion.tracks[k], "rms": a, "largest": b}
+            for k, a, b in zip(joints, rms.tolist(), largest.tolist(), strict=True)
+        ],
         "failed_joints": "; ".join(f"{name}: {why}" for name, why in curve.failures.items())
         or None,
     }
