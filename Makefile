@@ -6,13 +6,15 @@ RUN := $(BIN)/python -m quatspline
 PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check install --constraint requirements.lock
 QUICK ?=
 COMPILED ?=
+MOTIONS ?= motions
 # Text that reaches a command as it was given, through the environment: neither make nor a shell reads it.
 override NAME := $(value NAME)
 override TASK := $(value TASK)
-export NAME TASK
+override MOTIONS := $(value MOTIONS)
+export NAME TASK MOTIONS
 
 .DEFAULT_GOAL := help
-.PHONY: help reproduce benchmark benchmark-speed report test docs lint format new-baseline check-baseline reference lock clean
+.PHONY: help reproduce benchmark benchmark-speed motions report test docs lint format new-baseline check-baseline reference lock clean
 
 help: ## Show the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /|/' | awk -F'|' '{printf "  make %-16s %s\n", $$1, $$2}'
@@ -27,8 +29,12 @@ $(VENV)/run: pyproject.toml requirements.lock
 	@$(RUN) warmup
 	@touch $@
 
+$(VENV)/motions: $(VENV)/run
+	@$(PIP) --editable '.[motions]'
+	@touch $@
+
 $(VENV)/test: $(VENV)/run
-	@$(PIP) --editable '.[peers,test,dev,dask,docs]'
+	@$(PIP) --editable '.[peers,motions,test,dev,dask,docs]'
 	@touch $@
 
 reproduce: $(VENV)/run ## The paper in full and every other experiment at quick size, into results/
@@ -42,6 +48,9 @@ benchmark-speed: $(VENV)/test ## The speed suite (pytest-benchmark) as times the
 	  --benchmark-storage=file://results/benchmarks --benchmark-columns=median,iqr,rounds \
 	  --benchmark-max-time=0.3 --benchmark-min-rounds=3 \
 	  -W ignore::pytest_benchmark.logger.PytestBenchmarkWarning $${TASK:+-k "$$TASK"}
+
+motions: $(VENV)/motions ## Fetch the recorded clips, 9 MB, into MOTIONS=motions; QUATSPLINE_MOTIONS=motions measures on them
+	@$(RUN) motions "$$MOTIONS"
 
 report: $(VENV)/run ## Write results/report.html again from the tables that are there
 	@$(RUN) report
@@ -72,7 +81,7 @@ reference: $(VENV)/run ## Take the tables of the last run as the reference and q
 
 lock: ## Renew requirements.lock from the newest releases
 	@rm -rf $(VENV)-lock && $(PYTHON) -m venv $(VENV)-lock
-	@$(VENV)-lock/bin/pip --quiet --disable-pip-version-check install --editable '.[peers,test,dev,dask,docs]'
+	@$(VENV)-lock/bin/pip --quiet --disable-pip-version-check install --editable '.[peers,motions,test,dev,dask,docs]'
 	@(echo "# Versions that this release was tested with: constraints for pip, renewed by make lock."; \
 	  $(VENV)-lock/bin/pip --disable-pip-version-check freeze --exclude-editable) > requirements.lock.new
 	@mv requirements.lock.new requirements.lock && rm -rf $(VENV)-lock

@@ -161,7 +161,7 @@ def build(
 ) -> Curve:
     """The curve of a scheme through keyframes: the scheme's class called (see `Curve`).
 
-    Besides the scheme's own options, ``closing_sign`` and ``normalise`` are as there.
+    Besides the scheme's own options, ``closing_sign``, ``hold`` and ``normalise`` are as there.
 
     Examples
     --------
@@ -178,8 +178,8 @@ def _by_name(curve: Curve) -> Any:
     return _rebuilt, (curve.name, *curve.__getstate__())
 
 
-def _rebuilt(name: str, keyframes: Keyframes, given: dict[str, Any]) -> Curve:
-    return scheme(name).from_keyframes(keyframes, **given)
+def _rebuilt(name: str, keyframes: Keyframes, given: dict[str, Any], hold: bool = False) -> Curve:
+    return scheme(name).from_keyframes(keyframes, hold=hold, **given)
 
 
 def _discover(files: tuple[Path, ...]) -> Iterator[Found]:

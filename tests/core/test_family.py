@@ -16,14 +16,14 @@ from quatspline.families.circles import biarc, biarc_jet, blend, blend_jet
 from quatspline.families.means import point as mean
 from quatspline.families.nested import squad, squad_jet, triangle, triangle_jet
 from quatspline.kernels.family import family
-from quatspline.kernels.jit import CONSTANTS, REACH, RESULT, called, fit_kernel, inlined
+from quatspline.kernels.jit import CONSTANTS, REACH, ROWS, called, fit_kernel, inlined
 from quatspline.kernels.scalars import sincos
 from quatspline.kernels.values import Vec, keyframe, vec
 from quatspline.segments import SegmentCurve
 from walks import uneven, walk
 
 ENGINES = ("python", "compiled")
-ROOM = RESULT - CONSTANTS
+ROOM = ROWS - CONSTANTS
 LAST = ROOM - ARC_SIZE
 """Where an arc's constants end with the sheet's room for them."""
 

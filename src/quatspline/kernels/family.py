@@ -22,7 +22,7 @@ from functools import partial
 from typing import Any
 
 from quatspline.kernels import loops
-from quatspline.kernels.jit import CONSTANTS, RESULT, Kernel, bound, inlined
+from quatspline.kernels.jit import CONSTANTS, ROWS, Kernel, bound, inlined
 from quatspline.kernels.values import restored, vec
 
 Kernels = tuple[Kernel, Kernel, Kernel]
@@ -44,9 +44,9 @@ class Family:
     far: Kernels
 
     def __post_init__(self) -> None:
-        if self.constants > RESULT - CONSTANTS:  # kernels would write into the result's rows
+        if self.constants > ROWS - CONSTANTS:  # the driver would write beyond the sheet
             raise ValueError(
-                f"{self.constants} constants per segment: a sheet has {RESULT - CONSTANTS} rows for them"
+                f"{self.constants} constants per segment: a sheet has {ROWS - CONSTANTS} rows for them"
             )
 
 

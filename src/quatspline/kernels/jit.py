@@ -23,18 +23,19 @@ BLOCK = 48
 """Samples in a block: its sheet stays within the first-level cache, and rows no power of two apart
 do not compete for the same places there."""
 
-ROWS = 64
-"""Rows of a sheet: 0 holds u, 1 holds 1/h, 2... the segment's constants, the last four the result."""
+RESULT = 2
+"""The first row of the result: w, x, y, z of a quaternion or x, y, z of a rate.  Row 0 holds u, row 1 1/h."""
 
-CONSTANTS = 2
-"""The first row of the segment's constants."""
+CONSTANTS = RESULT + 4
+"""The first row of the segment's constants, which come last: a family has as many rows as it needs."""
+
+ROWS = CONSTANTS + 94
+"""Rows that a sheet has room for: moving frames of degree 9 fill them.  What a family leaves untouched costs
+nothing, being memory on the stack that no cache ever sees."""
 
 LANES = 4
 """Constants are spread over a row by vectors of so many, the widest that a core stores at once: BLOCK is a
 multiple."""
-
-RESULT = ROWS - 4
-"""The first row of the result: w, x, y, z of a quaternion or x, y, z of a rate."""
 
 ITERATIONS, CHANGE, RESIDUAL, REACH = range(4)
 """Entries of a fit kernel's report; the last is the largest half angle that a sample can meet."""
