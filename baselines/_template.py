@@ -32,12 +32,14 @@ class Template(Curve):
     #   interpolates = True          passes through its keyframes
     #   non_uniform = True           takes uneven times; where False, they are refused before `_fit`
     #   closable = True              has a closed curve; where False, closed=True is refused
+    #   lookahead = support / 2 - 1  keyframes after a segment's own two that shape it; None means all
     #   min_keyframes = 2            fewer are refused
     #   iterative = False            solves by iteration, and leaves a `solve_report`
     #   orders = (0, 1, 2)           of what a call offers: orientation, velocity, acceleration
     #   operations = Operations()    counts per sample, keyframe, ..., for tables: quatspline.Operations
     #   practical_keyframes = None   beyond so many, experiments leave it out
     #   rescue = {}                  options that find the curve where the default iteration does not
+    #   rough = {}                   options that try a curve sooner and nearly, where many are tried
     #   batched = False              True: `_fit` and the evaluation take all tracks, see SegmentCurve
     #   peer = None                  the third-party distribution that it wraps
     #   departs = {}                 {"test_name": "why a peer fails that check"}

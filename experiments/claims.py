@@ -103,8 +103,10 @@ def _of_class(run: Run, cls: type[Curve]) -> Iterator[Claim]:
         said = cls.continuity, tried, smooth, operator.neg
         yield theirs(f"continuity, {where}", *said, partial=in_part)
     yield ours("order", cls.order, [Probe(probes.order, name, FINEST)], partial(_near, cls.order))
-    shaped = "all" if cls.support is None else cls.support
-    yield ours("support", shaped, [Probe(probes.support, name)], partial(operator.eq, shaped))
+    for reach, probe in {"support": probes.support, "lookahead": probes.lookahead}.items():
+        claimed = getattr(cls, reach)
+        shaped = "all" if claimed is None else claimed
+        yield ours(reach, shaped, [Probe(probe, name)], partial(operator.eq, shaped))
     spins = [Probe(probes.constant_rate, name, *case) for case in _spins(cls)]
     steady = partial(_as_steady, cls.constant_rate)
     yield ours("constant rate", cls.constant_rate, spins, steady, _unsteadiness)

@@ -8,10 +8,13 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from quatspline.catalogue import version
+from quatspline.curve import Curve
 from quatspline.figures import style
 from quatspline.figures.heat import ROW, log_heat, scheme_rows
 from quatspline.instruments.continuity import jumps, measured_continuity
+from quatspline.instruments.curvature import Bending, curvature_energy
 from quatspline.instruments.fairness import fairness
+from quatspline.instruments.least_curvature import least_curvature
 from quatspline.instruments.trials import Row, attempted, builder
 from quatspline.quaternion import FloatArray
 from quatspline.runs.experiment import Run
@@ -27,7 +30,11 @@ NOTE = (
     "of 20 to 110 degrees a set, the others one step angle. Quadrature is refined inside segments until two levels "
     "agree to 1e-7; |alpha| is read on both sides of every keyframe, too. On every set velocity is searched for "
     "jumps, at keyframes and inside segments: where it jumps, or the curve leaps, the energy of that set is infinite, "
-    "and jumping says on how many; worst_finite is the worst of the others. Iterative schemes are solved to 1e-9."
+    "and jumping says on how many; worst_finite is the worst of the others. Iterative schemes are solved to 1e-9. "
+    "curvature_median: the median over curvature_sets sets of the path's curvature energy, the integral of kappa^2 by "
+    "arc length on S^3, over the least of all paths through the keyframes that are no longer than min-torque's, by "
+    "refinement of chains of arcs until two levels agree to 1e-4; infinite on curvature_infinite of them; "
+    "curvature_reason is the first reason."
 )
 FORMATS = {
     "least": ".6f",
@@ -38,6 +45,7 @@ FORMATS = {
     "jerk_median": ".3g",
     "length_median": ".4f",
     "peak_median": ".3f",
+    "curvature_median": ".4g",
 }
 REFERENCE = "min-torque"
 TOLERANCE = 1e-9
@@ -72,18 +80,33 @@ def measures(name: str, times: FloatArray, keyframes: FloatArray) -> list[Row]:
     if not curve.interpolates:
         return [{"failure": PASSES_BY, "version": version(name)}]
     jump = measured_continuity(jumps(curve, (0, 1))) < 1
-    return [{**fairness(curve), "velocity_jumps": jump, "version": version(name)}]
+    fair = fairness(curve)
+    bent = Bending(np.inf, "the velocity jumps") if jump else curvature_energy(curve)
+    row: Row = {**fair, "curvature": bent.energy, "curvature_reason": bent.reason}
+    if name == REFERENCE:
+        row |= _least_curvature(curve, fair["length"])
+    return [row | {"velocity_jumps": jump, "version": version(name)}]
+
+
+def _least_curvature(curve: Curve, turned: float) -> Row:
+    """The least curvature energy of paths as long as the curve's on S^3, which is half of what it turns."""
+    least = least_curvature(curve, 0.5 * turned)
+    return {"least_curvature": least.energy if least.settled else None}
 
 
 def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
     """Ratios to the reference's own sets, and their distribution."""
     keys, values = ["data", "set"], ["torque", "jerk", "length", "peak"]
-    columns = ["velocity_jumps", "version", "failure", *values]
+    columns = ["velocity_jumps", "version", "failure", "curvature", "curvature_reason", *values]
+    references = table[table["scheme"] == REFERENCE]
+    least = references.reindex(columns=[*keys, *values, "least_curvature"])
     table = table.reindex(columns=["scheme", *keys, *columns])
-    least = table.loc[table["scheme"] == REFERENCE, [*keys, *values]]
     joined = table.merge(least, on=keys, suffixes=("", "_least"), how="left")
     for value in values:
         joined[value] = joined[value] / joined[f"{value}_least"]
+    joined["curvature"] = joined["curvature"].astype(float) / joined["least_curvature"].astype(
+        float
+    )
     infinite = joined["velocity_jumps"].eq(True) & joined["torque"].notna()
     joined["torque"] = joined["torque"].where(~infinite, np.inf)
     groups = joined.groupby(["scheme", "data"], sort=False)
@@ -114,7 +137,19 @@ def _summary(rows: pd.DataFrame) -> Row:
             "length_median": known["length"].median(),
             "peak_median": known["peak"].median(),
         }
-    return summary
+    return summary | _bending(rows)
+
+
+def _bending(rows: pd.DataFrame) -> Row:
+    """What is said of curvature: a stop bends a curve that is fair otherwise without bound."""
+    bent = rows["curvature"].dropna()
+    infinite = rows.loc[np.isinf(rows["curvature"]), "curvature_reason"].dropna()
+    return {
+        "curvature_median": _quantile(bent, 0.5) if len(bent) else None,
+        "curvature_sets": len(bent),
+        "curvature_infinite": int(np.isinf(bent).sum()),
+        "curvature_reason": infinite.iloc[0] if len(infinite) else None,
+    }
 
 
 def _quantile(values: pd.Series, level: float) -> float:

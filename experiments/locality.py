@@ -10,8 +10,10 @@ from matplotlib.figure import Figure
 from quatspline.catalogue import scheme as scheme_class
 from quatspline.figures import style
 from quatspline.figures.heat import ROW, log_heat, scheme_rows
+from quatspline.instruments import lookahead as ahead
 from quatspline.instruments.locality import locality, responses
 from quatspline.instruments.trials import Row, attempted, builder, facts, records
+from quatspline.quaternion import FloatArray
 from quatspline.runs.experiment import Run, crossed
 from quatspline.trajectories.walks import walk
 
@@ -25,7 +27,8 @@ NOTE = (
     "reach_after: segments to the last one with a response over 1e-8; support: their sum, which is the number of "
     "keyframes that shape a segment; decay: factor a segment beyond the second (lower is more local). "
     "claimed_support is empty where all keyframes count; agrees: the measured support is the claimed one, or a tail "
-    "decays where none is claimed."
+    "decays where none is claimed. lookahead: keyframes after a segment's own two that shape it, of 12 that are each "
+    "turned in turn, empty where all do; claimed_lookahead is to be read likewise, and lookahead_agrees compares them."
 )
 FORMATS = {"response": ".2e", "amplification": ".3f", "decay": ".3f"}
 COUNT = 41
@@ -51,11 +54,24 @@ def _measured(run: Run, name: str, degrees: int) -> list[Row]:
     claimed = scheme_class(name).support
     agrees = not np.isnan(summary["decay"]) if claimed is None else summary["support"] == claimed
     more = {"claimed_support": claimed, "agrees": agrees, **facts(build(times, keyframes))}
+    more |= _lookahead(name, times, keyframes)
     return [row | summary | more for row in records(table)]
+
+
+def _lookahead(name: str, times: FloatArray, keyframes: FloatArray) -> Row:
+    few = times[: ahead.COUNT], keyframes[: ahead.COUNT]
+    measured = ahead.lookahead(ahead.moved(builder(name), *few))
+    claimed = scheme_class(name).lookahead
+    return {
+        "lookahead": measured,
+        "claimed_lookahead": claimed,
+        "lookahead_agrees": measured == claimed,
+    }
 
 
 def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
     whole = ["offset", "reach_before", "reach_after", "support", "claimed_support"]
+    whole += ["lookahead", "claimed_lookahead"]
     return table.astype({name: "Int64" for name in whole if name in table})
 
 

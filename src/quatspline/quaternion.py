@@ -3,8 +3,12 @@
 All functions broadcast their leading axes and return float64.  Logarithms are half rotation
 vectors: ``log(q) = theta n`` for ``q = cos theta + n sin theta`` with 0 <= theta <= pi.  Angles come
 from atan2, never from acos, so that small rotations keep their relative accuracy (see
-docs/mathematics/notation.md).  Other forms of rotations are scipy's business:
-``scipy.spatial.transform.Rotation.from_quat(q, scalar_first=True)``.
+docs/mathematics/notation.md).
+
+Quaternions are unit quaternions, but for `inverse`, `slerp_modulus` and `to_matrix`, which take any length
+but zero; `slerp_vectors` and `lerp_vectors` go between vectors of any length; `to_matrix`, `from_matrix`
+and `rotation_matrix_between` are the matrix forms.  Other forms of rotations, Euler angles above all, are
+scipy's business: ``scipy.spatial.transform.Rotation.from_quat(q, scalar_first=True)``.
 """
 
 from __future__ import annotations
@@ -33,9 +37,15 @@ from quatspline.kernels.values import (
     vec,
     vec_at,
 )
-
-ANTIPODAL = 4 * float(np.finfo(float).eps)
-"""Quaternions whose sum is shorter than this have no shortest arc between them."""
+from quatspline.lengths import ANTIPODAL as ANTIPODAL
+from quatspline.lengths import inverse as inverse
+from quatspline.lengths import lerp_vectors as lerp_vectors
+from quatspline.lengths import slerp_modulus as slerp_modulus
+from quatspline.lengths import slerp_vectors as slerp_vectors
+from quatspline.lengths import split
+from quatspline.matrices import from_matrix as from_matrix
+from quatspline.matrices import rotation_matrix_between as rotation_matrix_between
+from quatspline.matrices import to_matrix as to_matrix
 
 OPPOSITE = 1e-12
 """A vector part shorter than this, before -1, has no direction of its own."""
@@ -164,14 +174,7 @@ def shortest_rotation(u: ArrayLike, v: ArrayLike) -> FloatArray:
     ValueError
         Where a direction has no length.
     """
-    directions = []
-    for name, given in (("u", u), ("v", v)):
-        vector = np.asarray(given, dtype=float)
-        largest = np.max(np.abs(vector), axis=-1, keepdims=True)
-        if not np.all(largest > 0.0):
-            raise ValueError(f"{name} has a direction of length zero")
-        vector = vector / largest  # squares of very small or large numbers leave float64
-        directions.append(vector / np.linalg.norm(vector, axis=-1, keepdims=True))
+    directions = [split(name, given, 3)[0] for name, given in (("u", u), ("v", v))]
     return _apply(_shortest_rotation, (directions[0], 3), (directions[1], 3), width=4)
 
 

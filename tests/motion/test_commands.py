@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ from clips import angles, figure, put
 
 import quatspline as qs
 from quatspline import quaternion
-from quatspline.cli import main
+from quatspline.cli import joints, main
 
 
 @pytest.fixture
@@ -130,9 +131,10 @@ def test_info_is_one_screen(walk: Path, capsys: pytest.CaptureFixture[str]) -> N
     found = dict(line.split(maxsplit=1) for line in lines if not line.startswith("largest"))
     assert found["tracks"].startswith("5, a skeleton: joint 0, joint 1")
     assert found["frames"] == "64"
-    assert found["rate"].startswith("60 Hz")
+    assert found["rate"] == "60 Hz (even)"
+    assert found["start"] == "0.0 s"
     assert found["gaps"] == "none"
-    assert "of 1 tracks changing" in found["positions"]
+    assert found["positions"] == "in the file's unit, 1 of 5 changing"
 
 
 def test_info_tells_what_is_refused_and_goes_on(
@@ -178,8 +180,48 @@ def test_compare_of_a_skeleton_at_the_frames_left_out(
     assert slerp["largest_joint"] == f"joint {off.argmax()}"
     assert table.index[0] == "local-quintic"
     assert table.loc["local-quintic", "end_rms"] < slerp["end_rms"]
+    by_joint = pd.read_csv(tmp_path / "out" / "joints.csv").set_index(["scheme", "joint"])
+    assert len(by_joint) == 2 * 5
+    largest = [by_joint.loc[("slerp", f"joint {k}"), "largest"] for k in range(5)]
+    np.testing.assert_allclose(largest, off, rtol=1e-9)
+    assert by_joint.loc["slerp", "rms"].max() == pytest.approx(slerp["rms_worst"], rel=1e-9)
+    assert by_joint.loc["slerp", "rms"].median() == pytest.approx(slerp["rms_median"], rel=1e-9)
     assert run(*words, "--keep", 1) == 2
     assert "none is left out" in capsys.readouterr().err
+
+
+def test_the_folder_of_a_skeleton_has_figures_and_a_page_that_plays(
+    walk: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "out"
+    words = ("compare", walk, "--keep", 8, "--out", out)
+    assert run(*words, "--schemes", "local-quintic,scipy-slerp,slerp") == 0
+    assert set(joints.FILES) | {"manifest.json"} == {path.name for path in out.iterdir()}
+    [played] = json.loads((out / "kept.replay.json").read_text())
+    assert list(played["schemes"]) == ["slerp", "local-quintic", "scipy-slerp"]
+    assert played["title"] == "walk.bvh"
+    assert played["joints"] == [f"joint {k}" for k in range(5)]
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert 'id="replay"' in page
+    assert page.count('class="picture"') == 2
+    assert played["truth"] in page
+    assert main(["report", "--out", str(out)]) == 0
+    assert played["truth"] in (out / "report.html").read_text(encoding="utf-8")
+
+
+def test_a_body_is_played_where_frames_are_left_out(tmp_path: Path) -> None:
+    t = np.arange(33) / 8
+    v = np.stack([np.sin(t), np.cos(1.3 * t), 0.2 * t], axis=1) / 2
+    qs.write_motion(tmp_path / "a.tum", qs.Motion(t, quaternion.exp(v), 10 * v))
+    out = tmp_path / "out"
+    words = ("compare", tmp_path / "a.tum", "--schemes", "slerp,squad", "--out", out)
+    assert run(*words, "--keep", 4) == 0
+    [played] = json.loads((out / "compare.replay.json").read_text())
+    assert (list(played["schemes"]), played["joints"]) == (["slerp", "squad"], ["body"])
+    assert 'id="replay"' in (out / "report.html").read_text(encoding="utf-8")
+    assert run(*words) == 0
+    assert not (out / "compare.replay.json").exists()
+    assert 'id="replay"' not in (out / "report.html").read_text(encoding="utf-8")
 
 
 def test_compare_of_a_body_adds_the_errors_at_the_frames_left_out(tmp_path: Path) -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import importlib
 import json
+import os
 import shutil
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -11,10 +13,15 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+import pytest
 from matplotlib.figure import Figure
 
+from quatspline.motion import Motion
+from quatspline.motion.replay import replay
 from quatspline.page import Scene, paper_scenes
+from quatspline.quaternion import exp
 from quatspline.runs.results import Results
+from quatspline.trajectories.figure_walk import figure_walk
 from tools.readme import REFERENCE
 
 EVIL = '</script><script>alert(1)</script><img src=x onerror="alert(2)">&amp;'
@@ -32,6 +39,36 @@ CONVERGENCE = pd.DataFrame(
 
 SCHEMES = ("quartic", "slerp")
 """Schemes of the player in these tests: two kernels to compile, not thirty."""
+
+
+REQUIRED = "QUATSPLINE_BROWSER"
+"""Set where a missing browser is a failure: in continuous integration."""
+
+DESKTOP = {"width": 1280, "height": 900}
+
+REBUILT, EVERY = ("slerp", "quartic", "squad"), 16
+"""Of the walk in these pages."""
+
+
+def needed(module: str) -> Any:
+    """A module of the extra 'test', without which a test is skipped or, where required, fails."""
+    required = os.environ.get(REQUIRED)
+    return importlib.import_module(module) if required else pytest.importorskip(module)
+
+
+def replays() -> list[dict[str, Any]]:
+    """The walk, and a body that flies a loop."""
+    walk = replay(figure_walk(), REBUILT, EVERY, title="figure-walk", source="Made.")
+    return [walk, replay(loop(), REBUILT[:2], EVERY, title="loop")]
+
+
+def loop(frames: int = 400) -> Motion:
+    """A body that looks where it flies."""
+    t = np.arange(frames) / 100.0
+    turn = 0.25 * np.pi * t
+    places = np.stack([np.cos(2 * turn), np.sin(2 * turn), 0.3 * np.sin(turn)], axis=1)
+    half = np.stack([0.1 * np.sin(5 * turn), 0.1 * np.cos(3 * turn), turn], axis=1)
+    return Motion(t, exp(half), places, unit="m")
 
 
 class Elements(HTMLParser):
@@ -80,6 +117,7 @@ def results(folder: Path) -> Path:
     made.table("convergence", CONVERGENCE)
     made.table("figure1", pd.DataFrame({"u": [0.0, 1.0]}))
     made.text("unheard-of.caption.txt", "A <b>line</b>.\n")
+    made.replays("reconstruct", replays())
     entry = {"size": "quick", "seed": 0, "seconds": 1.0, "failure": None}
     made.record("unheard-of", entry)
     made.record("broken", entry | {"failure": "ValueError: <none>"})

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import importlib
 import json
-import os
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -13,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pages import EVIL, SCHEMES, Opened
+from pages import DESKTOP, EVIL, SCHEMES, Opened, needed
 from quatspline.catalogue import scheme
 from quatspline.runs.results import Results
 from quatspline.trajectories.paper import CASES
@@ -22,53 +19,7 @@ from tools.readme import REFERENCE
 POSE = 1e-6
 """Rotation angle that a pose on the canvas may be off: samples are stored as 32-bit numbers."""
 
-REQUIRED = "QUATSPLINE_BROWSER"
-"""Set where a missing browser is a failure: in continuous integration."""
-
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-FLAGS = [
-    *("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"),
-    *("--disable-background-networking", "--disable-component-update", "--disable-sync"),
-]
 pytestmark = pytest.mark.browser
-
-
-def needed(module: str) -> Any:
-    """A module of the extra 'test', without which a test is skipped or, where required, fails."""
-    required = os.environ.get(REQUIRED)
-    return importlib.import_module(module) if required else pytest.importorskip(module)
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    if CHROMIUM is None:
-        report = pytest.fail if os.environ.get(REQUIRED) else pytest.skip
-        report("no chromium on this machine: install the system's package")
-    playwright = needed("playwright.sync_api")
-    with playwright.sync_playwright() as driver:
-        opened = driver.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        yield opened
-        opened.close()
-
-
-DESKTOP = {"width": 1280, "height": 900}
-
-
-@pytest.fixture
-def opened(browser: Any, page_folder: Path) -> Iterator[Any]:
-    """Opens the page in a context of the test's own."""
-    made: list[Opened] = []
-
-    def open_it(**context: Any) -> Opened:
-        made.append(
-            Opened(browser, page_folder / "report.html", **{"viewport": DESKTOP, **context})
-        )
-        return made[-1]
-
-    yield open_it
-    for one in made:
-        one.context.close()
-        one.check()
 
 
 @pytest.fixture(scope="module")
@@ -160,7 +111,7 @@ def test_between_keyframes_the_player_shows_the_curve(page: Opened) -> None:
 
 def test_the_player_plays_pauses_and_obeys_the_keys(page: Opened) -> None:
     time = "quatspline.player.pose().time"
-    page.page.focus("input[name=time]")
+    page.page.focus("#player input[name=time]")
     page.page.keyboard.press("Space")
     page.page.wait_for_function(f"{time} > 0.05")
     page.page.keyboard.press("Space")
@@ -183,7 +134,7 @@ def test_the_player_plays_pauses_and_obeys_the_keys(page: Opened) -> None:
 
 
 def test_scrubbing_moves_the_body_and_catches_keyframes(page: Opened) -> None:
-    strip = page.page.locator("canvas.strip").first
+    strip = page.page.locator("#player canvas.strip").first
     strip.scroll_into_view_if_needed()
     box = strip.bounding_box()
     middle = box["y"] + box["height"] / 2
@@ -191,7 +142,7 @@ def test_scrubbing_moves_the_body_and_catches_keyframes(page: Opened) -> None:
     assert 1.3 < page("quatspline.player.pose().time") < 1.7
     page.page.mouse.click(box["x"] + 8 + 0.5 * (box["width"] - 16) + 1, middle)
     assert page("quatspline.player.pose().keyframe") == 2
-    page.page.locator("input[name=time]").fill("1.25")
+    page.page.locator("#player input[name=time]").fill("1.25")
     assert page("quatspline.player.pose().time") == 1.25
 
 

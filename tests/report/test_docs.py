@@ -20,6 +20,7 @@ from quatspline import quaternion
 from quatspline.catalogue import FOLDERS, found
 from quatspline.curve import Curve
 from quatspline.engines import engine
+from quatspline.runs.experiment import files
 from quatspline.segments import SegmentCurve
 from tools.new_scheme import COMPILED, new_scheme
 from tools.readme import DOCS, PICTURES, QUOTING, ROOT, derivations, pages_block
@@ -224,8 +225,8 @@ def test_what_is_broken_does_not_build(line: str, tmp_path: Path) -> None:
 
 
 def test_tables_that_pages_cite_exist() -> None:
-    """A page names a table of the reference, and not tables at large."""
-    known = {path.name for path in (ROOT / "results" / "reference").glob("*.csv")}
+    """A page names a table of an experiment, and not tables at large."""
+    known = {f"{name}.csv" for name in files()}
     for page in [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]:
         text = page.read_text(encoding="utf-8")
         cited = set(re.findall(r"results/([\w-]+\.csv)", text))

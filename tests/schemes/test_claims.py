@@ -150,6 +150,28 @@ def test_support(scheme: Scheme) -> None:
             assert touched == wanted, f"closed {closed}, keyframe {moved}"
 
 
+def felt_ahead(scheme: Scheme, closed: bool, moves: range | tuple[int, ...]) -> int:
+    """The farthest keyframe after a segment's own two that moves it, of some that are moved."""
+    farthest = 0
+    for moved in moves:
+        touched = changed(scheme, closed, moved) > UNCHANGED
+        ahead = moved - np.flatnonzero(touched) - 1
+        if closed:  # counted the shorter way round
+            ahead = (ahead + len(touched) // 2) % len(touched) - len(touched) // 2
+        farthest = max(farthest, *ahead)
+    return int(farthest)
+
+
+def test_lookahead(scheme: Scheme) -> None:
+    """A segment feels so many keyframes ahead, at open ends and over a closed curve's seam too."""
+    n = count_of(scheme, 16)
+    claimed = scheme.lookahead
+    assert felt_ahead(scheme, False, range(n)) == (n - 2 if claimed is None else claimed)
+    if scheme.closable:
+        wanted = n // 2 - 1 if claimed is None else claimed
+        assert felt_ahead(scheme, True, (0, 8)) == wanted
+
+
 def smooth_motion(t: FloatArray) -> FloatArray:
     """Q(t) = exp(a) exp(b): the motion of the specification, in log units."""
     a = np.stack([0.8 * np.sin(1.1 * t), 0.6 * np.cos(0.7 * t + 0.3), 0.5 * np.sin(1.7 * t + 1)], 1)
@@ -176,6 +198,7 @@ def test_claims_are_of_their_kind(scheme: Scheme) -> None:
     assert scheme.continuity in range(7)
     assert scheme.order in range(1, 9)
     assert scheme.support is None or scheme.support >= 2
+    assert scheme.lookahead is None or scheme.lookahead >= 0
     assert scheme.constant_rate in ("everywhere", "interior", "no")
     assert all(isinstance(x, bool) for x in (scheme.non_uniform, scheme.closable, scheme.iterative))
     assert scheme.min_keyframes >= 1

@@ -15,10 +15,12 @@ from quatspline import quaternion
 from quatspline.catalogue import build, scheme
 from quatspline.claims import own
 from quatspline.curve import Curve
+from quatspline.instruments import lookahead as ahead
 from quatspline.instruments.accuracy import inner_angle, measured_order
 from quatspline.instruments.continuity import jumps, measured_continuity, speeds
 from quatspline.instruments.fairness import fairness
 from quatspline.instruments.locality import locality, responses
+from quatspline.instruments.smoothness import inner_jumps, inner_smoothness
 from quatspline.instruments.trials import builder
 from quatspline.quaternion import FloatArray
 from quatspline.trajectories.sets import torque_sets
@@ -65,6 +67,14 @@ def continuity(
     return measured_continuity(jumps(builder(name)(*walked(count, degrees, uneven, seed))))
 
 
+def inner_continuity(
+    name: str, count: int = 4, degrees: float = 60, uneven: bool = False, seed: int = 0
+) -> int:
+    """k of C^k inside segments; 6 where no derivative up to the sixth jumps, and 1 at least."""
+    curve = builder(name)(*walked(count, degrees, uneven, seed))
+    return inner_smoothness(inner_jumps(curve))
+
+
 def miss(
     name: str, count: int = 4, degrees: float = 60, uneven: bool = False, seed: int = 0
 ) -> float:
@@ -99,6 +109,12 @@ def support(name: str, degrees: float = 30) -> int | str:
     """Keyframes that shape a segment; "all" where the response has a tail that decays."""
     found = locality(responses(builder(name), *walked(MANY, degrees)))
     return "all" if np.isfinite(found["decay"]) else found["support"]
+
+
+def lookahead(name: str, degrees: float = 30) -> int | str:
+    """Keyframes after a segment's own two that shape it; "all" where the last one is always felt."""
+    found = ahead.lookahead(ahead.moved(builder(name), *walked(ahead.COUNT, degrees)))
+    return "all" if found is None else found
 
 
 def constant_rate(name: str, degrees: float = 50, uneven: bool = False, count: int = 17) -> str:
@@ -212,3 +228,20 @@ def moved_by_a_flip(name: str, count: int = 5, degrees: float = 60, **options: A
     astray = build(name, times, flipped, align=False, **options)
     t = straight.keyframes.inside(SAMPLES)
     return float(np.degrees(quaternion.distance(straight(t), astray(t)).max()))
+
+
+def norm_error(name: str, count: int = 4, degrees: float = 60) -> float:
+    """How far the length of a quaternion on the curve is off 1, at most."""
+    curve = builder(name)(*walked(count, degrees))
+    q = curve(curve.keyframes.inside(SAMPLES))
+    return float(np.abs(np.linalg.norm(q, axis=-1) - 1.0).max())
+
+
+def off_another(
+    name: str, other: str, count: int = 4, degrees: float = 60, **options: Any
+) -> float:
+    """The largest angle in degrees between the curves of two schemes; options are the other's."""
+    times, keyframes = walked(count, degrees)
+    curve, wanted = builder(name)(times, keyframes), build(other, times, keyframes, **options)
+    t = curve.keyframes.inside(SAMPLES)
+    return float(np.degrees(quaternion.distance(curve(t), wanted(t)).max()))

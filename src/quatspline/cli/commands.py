@@ -1,4 +1,4 @@
-"""The command line: list, run, compare, sample, reduce, info, report, warmup.
+"""The command line: list, options, run, compare, sample, reduce, info, motions, report, warmup.
 
 Exit status: 0 done; 1 something unforeseen failed; 2 bad usage or bad input, told in one line on
 stderr; 128 + n ended by signal n.  Whatever is slow to import waits until a command needs it.
@@ -35,7 +35,8 @@ CLAIMS: tuple[tuple[str, Callable[[Any], Any]], ...] = (
     ("C^k", lambda s: f"C{s.continuity}"),
     ("interpolates", lambda s: _yes(s.interpolates)),
     ("order", lambda s: str(s.order)),
-    ("support", lambda s: "all" if s.support is None else str(s.support)),
+    ("support", lambda s: _all_or(s.support)),
+    ("lookahead", lambda s: _all_or(s.lookahead)),
     ("constant rate", lambda s: s.constant_rate),
     ("uneven times", lambda s: _yes(s.non_uniform)),
     ("closes", lambda s: _yes(s.closable)),
@@ -76,7 +77,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _interrupted(command: str, status: int) -> int:
-    hint = ": the same command goes on where it stopped" if command == "run" else ""
+    hint = ": the same command goes on where it stopped" if command in ("run", "motions") else ""
     return _told(f"interrupted{hint}", status)
 
 
@@ -132,8 +133,18 @@ def _claims(item: Found) -> list[str]:
     return [cell(show) for _, show in CLAIMS]
 
 
+def _all_or(keyframes: int | None) -> str:
+    return "all" if keyframes is None else str(keyframes)
+
+
 def _yes(claim: bool) -> str:
     return "yes" if claim else "no"
+
+
+def _options(arguments: argparse.Namespace) -> int:
+    from quatspline.cli import options
+
+    return options.command(arguments.scheme)
 
 
 def _run(arguments: argparse.Namespace) -> int:
@@ -155,11 +166,12 @@ def _run(arguments: argparse.Namespace) -> int:
 
 
 def _compare(arguments: argparse.Namespace) -> int:
-    from quatspline.cli import compare, joints, recorded, words
+    from quatspline.cli import compare, joints, options, recorded, words
     from quatspline.runs.results import Results
 
     # A wrong name is told before a long file is read.
     arguments.keyframes, schemes = words.of_compare(arguments.keyframes, arguments.schemes)
+    given = options.of_schemes(schemes, arguments.options)
     motion = recorded.motion_of(arguments)
     body = len(motion.tracks) == 1
     if not body and arguments.keep is None:
@@ -170,6 +182,7 @@ def _compare(arguments: argparse.Namespace) -> int:
     with results.writing():
         results.guard((compare if body else joints).FILES, inputs=[arguments.keyframes])
         common = {"schemes": schemes, "results": results, "call": arguments.command}
+        common |= {"name": Path(arguments.keyframes).name, "options": given}
         if not body:
             return joints.command(motion, every=arguments.keep, **common)
         return compare.command(motion, closed=arguments.closed, every=arguments.keep, **common)
@@ -202,6 +215,12 @@ def _info(arguments: argparse.Namespace) -> int:
     return DONE
 
 
+def _motions(arguments: argparse.Namespace) -> int:
+    from quatspline.cli import motions
+
+    return motions.command(arguments.folder, mirror=arguments.mirror, force=arguments.force)
+
+
 def _warm_up(arguments: argparse.Namespace) -> int:
     from quatspline.runs.warmup import main
 
@@ -211,11 +230,13 @@ def _warm_up(arguments: argparse.Namespace) -> int:
 
 COMMANDS = {
     "list": _list,
+    "options": _options,
     "run": _run,
     "compare": _compare,
     "sample": _sample,
     "reduce": _reduce,
     "info": _info,
+    "motions": _motions,
     "report": _report,
     "warmup": _warm_up,
 }

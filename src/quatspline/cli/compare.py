@@ -5,7 +5,8 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 FILES = [
     *(f"compare{end}" for end in (".csv", ".md", ".png", ".svg", ".caption.txt")),
     *(f"rates{end}" for end in (".png", ".svg", ".caption.txt")),
-    *("recommendation.md", "report.html"),
+    *("recommendation.md", "compare.replay.json", "report.html"),
 ]
 """What the command writes."""
 ERRORS = ("left_out_rms", "left_out_largest")
@@ -45,7 +46,9 @@ def command(
     closed: bool,
     results: Results,
     every: int | None = None,
+    options: Mapping[str, Any] = MappingProxyType({}),
     call: Sequence[str] = (),
+    name: str = "Your motion",
 ) -> int:
     """Serve ``quatspline compare``: tables, figures, the recommendation and the page in a folder.
 
@@ -54,27 +57,30 @@ def command(
     ValueError
         On bad keyframes, an unknown scheme, or files in the folder that are not its own.
     """
+    from quatspline.cli.played import played
     from quatspline.page import own_scene, write_page
-    from quatspline.page.sections import OWN
+    from quatspline.page.own_sections import OWN
 
     began = time.perf_counter()
     source, motion = motion, _kept(motion, every)
     keyframes = comparing.prepared(motion.stamps, motion.quaternions[:, 0], closed)
     results.begin(call, schemes=list(schemes) if schemes is not None else None)
     with always_compiled():
-        table, curves = comparing.compared(keyframes, schemes)
+        table, curves = comparing.compared(keyframes, schemes, options)
         if every is not None:
             table = _with_errors(table, curves, source, every)
+            results.replays("compare", played(source, table, ERRORS[0], every, name))
     table = results.table(
         "compare",
         table,
         title=comparing.TITLE,
-        note=comparing.NOTE + (KEPT if every is not None else ""),
+        note=comparing.NOTE + (KEPT if every is not None else "") + comparing.told(options),
         formats=comparing.FORMATS | dict.fromkeys(ERRORS, ".3e"),
         keys=[],
     )
     found = _recommended(results, table)
     names = _drawn(results, table, curves, keyframes)
+    results.tidy("compare")  # without --keep there is no truth to play
     entry = {"title": comparing.TITLE, "size": f"{keyframes.count} keyframes", "seed": None}
     results.record("compare", entry | {"seconds": round(time.perf_counter() - began, 3)})
     results.finish()

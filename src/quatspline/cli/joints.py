@@ -1,21 +1,33 @@
-"""The command ``compare`` on many tracks: what schemes make of every K-th frame, over all joints."""
+"""The command ``compare`` on many tracks: tables, figures and a page of what schemes make of every K-th frame."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import sys
+import time
+from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from quatspline.engines.engine import always_compiled
 from quatspline.system.stdout import say
 
 if TYPE_CHECKING:
     import pandas as pd
 
+    from quatspline.inputs.arrays import BoolArray
+    from quatspline.instruments.trials import Row
     from quatspline.motion import Motion
     from quatspline.runs.results import Results
 
-NAME = "kept"
-FILES = [f"{NAME}.csv", f"{NAME}.md"]
+NAME, JOINTS = "kept", "joints"
+FILES = [
+    *(
+        f"{name}{end}"
+        for name in (NAME, JOINTS)
+        for end in (".csv", ".md", ".png", ".svg", ".caption.txt")
+    ),
+    *(f"{NAME}.replay.json", "report.html"),
+]
 """What the command writes."""
 
 TITLE = "Every {every}-th frame kept, measured at the {count} left out"
@@ -25,6 +37,20 @@ NOTE = (
     "effectors in the motion's unit of length, on the root's true path; seconds are of one set-up. Sorted by "
     "rms_median."
 )
+JOINTS_TITLE = "Joint by joint"
+JOINTS_NOTE = (
+    "Root mean square and largest angle (rad) between a joint of the motion and of its rebuilding, at the frames left "
+    "out; joints on which a scheme fails have no row."
+)
+SPANS = (
+    "Angles at the frames left out: dots are the median over the joints of their root mean squares, bars reach to the "
+    "worst joint, strokes are the largest angle of all.\n"
+)
+BY_JOINT = (
+    "Root mean square angle of every joint at the frames left out, by slerp and the best schemes.\n"
+)
+DRAWN = 4
+"""Schemes that are told apart joint by joint."""
 FORMATS = {"rms_median": ".3e", "rms_worst": ".3e", "largest": ".3e", "seconds": ".2e"}
 COLUMNS = [
     *("scheme", "joints", "rms_median", "rms_worst", "worst_joint", "largest", "largest_joint"),
@@ -38,42 +64,107 @@ def command(
     schemes: Sequence[str] | None,
     every: int,
     results: Results,
+    options: Mapping[str, Any],
     call: Sequence[str],
+    name: str,
 ) -> int:
-    """Serve ``quatspline compare --keep`` on a motion of several tracks: a table in a folder."""
-    import pandas as pd
-
-    from quatspline import catalogue
-    from quatspline.instruments.trials import attempted
+    """Serve ``quatspline compare --keep`` on a motion of several tracks: tables, figures and a page in a folder."""
+    from quatspline.cli.played import played
     from quatspline.motion import keeping
-    from quatspline.runs.experiment import Run
-    from quatspline.timing.own_keyframes import left_out
+    from quatspline.page import write_page
+    from quatspline.page.own_sections import KEPT
 
+    began = time.perf_counter()
     out = keeping.left_out(motion, every)
-    work = int((~out).sum()) * len(motion.tracks)
     results.begin(call, schemes=list(schemes) if schemes is not None else None)
-    rows = []
-    for name in Run(quick=True).progress(list(schemes or catalogue.schemes()), label="compare"):
-        reason = left_out(name, work) if schemes is None else None
-        measure = partial(_row, motion, name, every)
-        row = attempted(measure)[0] if reason is None else {"failure": reason}
-        rows.append({"scheme": name} | row)
-    table = pd.DataFrame(rows).reindex(columns=COLUMNS)
-    table = table.sort_values(["rms_median", "scheme"], na_position="last", ignore_index=True)
     title = TITLE.format(every=every, count=int(out.sum()))
-    results.table(NAME, table, title=title, note=NOTE, formats=FORMATS, keys=[])
-    results.record(
-        NAME, {"title": title, "size": f"{len(out)} frames", "seed": None, "seconds": None}
-    )
+    with always_compiled():
+        rows = _measured(motion, schemes, every, out, options)
+        table, joints = _tables(results, rows, title, options)
+        results.replays(NAME, played(motion, table, "rms_median", every, name))
+    _drawn(results, table, joints)
+    entry = {"title": title, "size": f"{len(out)} frames", "seed": None}
+    results.record(NAME, entry | {"seconds": round(time.perf_counter() - began, 3)})
     results.finish()
     say(_lines(table))
+    page = write_page(
+        results,
+        title=f"{name}: {title[0].lower()}{title[1:]}",
+        scenes=[],
+        sections=KEPT,
+        findings=[],
+    )
+    print(page, file=sys.stderr)
     return 0
 
 
-def _row(motion: Motion, name: str, every: int) -> list[dict[str, object]]:
+def _measured(
+    motion: Motion,
+    schemes: Sequence[str] | None,
+    every: int,
+    out: BoolArray,
+    options: Mapping[str, Any],
+) -> list[Row]:
+    """A row a scheme, with what was measured of each joint."""
+    from quatspline import catalogue
+    from quatspline.instruments.trials import attempted
+    from quatspline.options import among
+    from quatspline.runs.experiment import Run
+    from quatspline.timing.own_keyframes import left_out
+
+    work = int((~out).sum()) * len(motion.tracks)
+    rows = []
+    for scheme in Run(quick=True).progress(list(schemes or catalogue.schemes()), label="compare"):
+        reason = left_out(scheme, work) if schemes is None else None
+        given = among(catalogue.scheme(scheme), options)
+        measure = partial(_row, motion, scheme, every, given)
+        row = attempted(measure)[0] if reason is None else {"failure": reason}
+        rows.append({"scheme": scheme} | row)
+    return rows
+
+
+def _row(motion: Motion, scheme: str, every: int, given: Mapping[str, Any]) -> list[Row]:
     from quatspline.motion import keeping
 
-    return [keeping.row(motion, name, every)]
+    return [keeping.row(motion, scheme, every, given)]
+
+
+def _tables(
+    results: Results, rows: Sequence[Row], title: str, options: Mapping[str, Any]
+) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Write both tables: of schemes, and of every joint under each."""
+    import pandas as pd
+
+    from quatspline.comparing import told
+
+    table = pd.DataFrame(rows).reindex(columns=COLUMNS)
+    table = table.sort_values(["rms_median", "scheme"], na_position="last", ignore_index=True)
+    table = results.table(
+        NAME, table, title=title, note=NOTE + told(options), formats=FORMATS, keys=[]
+    )
+    of = [{"scheme": row["scheme"]} | joint for row in rows for joint in row.get("by_joint", [])]
+    joints = pd.DataFrame(of, columns=["scheme", "joint", "rms", "largest"])
+    formats = {"rms": ".3e", "largest": ".3e"}
+    return table, results.table(
+        JOINTS, joints, title=JOINTS_TITLE, note=JOINTS_NOTE, formats=formats, keys=[]
+    )
+
+
+def _drawn(results: Results, table: pd.DataFrame, joints: pd.DataFrame) -> None:
+    """Draw both figures; none where nothing was measured."""
+    import matplotlib as mpl
+
+    from quatspline.cli.played import chosen
+    from quatspline.figures import kept, style
+
+    if joints.empty:
+        return
+    mpl.use("Agg")  # nothing here may open a window
+    with style.house():
+        results.figure(NAME, kept.spans(table))
+        results.figure(JOINTS, kept.by_joint(joints, chosen(table, "rms_median")[:DRAWN]))
+    results.text(f"{NAME}.caption.txt", SPANS)
+    results.text(f"{JOINTS}.caption.txt", BY_JOINT)
 
 
 def _lines(table: pd.DataFrame) -> list[str]:

@@ -163,6 +163,8 @@ def _perform(experiment: Experiment, run: Run, results: Results) -> None:
         results.text(f"{name}.caption.txt", module.caption(table).strip() + "\n")
     if hasattr(module, "draw") and not _all_failed(table):
         _draw(module, table, name, results)
+    if hasattr(module, "replays"):
+        results.replays(name, module.replays(run))
 
 
 def _measured(name: str, module: ModuleType, run: Run, results: Results) -> Any:

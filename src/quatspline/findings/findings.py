@@ -9,7 +9,7 @@ from typing import Any
 
 import pandas as pd
 
-from quatspline.findings import decisions
+from quatspline.findings import decisions, recorded
 from quatspline.findings.quotes import Cell, Ledger, Part, Quote, Reader, Span, said
 from quatspline.instruments.summary import ALL
 
@@ -176,6 +176,34 @@ def _torque(cell: Ledger) -> tuple[Part, ...]:
     )
 
 
+def _variants(cell: Ledger) -> tuple[Part, ...]:
+    arc: dict[str, Any] = {"scheme": "nlerp", "sphere_degrees": 90}
+    return said(
+        "What stands in for slerp: nlerp is off by up to {lag:.3f} degrees on the sphere of quaternions where the "
+        "angle there is {angle:.0f} degrees, a step of {step:.0f} degrees ({formula:.4f} rad as a rotation by its "
+        "closed form, {measured:.4f} measured). Over that arc Eberly's polynomial is off by {few:.1e} rad with "
+        "{few_n:.0f} terms, {some:.1e} with {some_n:.0f} and {many:.1e} with {many_n:.0f}; Li's recurrence drifts by "
+        "{short:.1e} rad in {short_n:.0f} steps and {long:.1e} in {long_n:.0f}.",
+        lag=cell("slerp-variants", "sphere_error_degrees", **arc),
+        angle=cell("slerp-variants", "sphere_degrees", **arc),
+        step=cell("slerp-variants", "step_degrees", **arc),
+        formula=cell("slerp-variants", "closed_form", **arc),
+        measured=cell("slerp-variants", "error", **arc),
+        **_settings(cell, "fast-slerp", "terms", few=4, some=8, many=16),
+        **_settings(cell, "incremental-slerp", "steps", short=64, long=4096),
+    )
+
+
+def _settings(cell: Ledger, scheme: str, option: str, **values: int) -> dict[str, Cell]:
+    """Errors by the names given, and the settings that they belong to as ``<name>_n``."""
+    quoted = {}
+    for name, value in values.items():
+        row: dict[str, Any] = {"scheme": scheme, "sphere_degrees": 90, option: value}
+        quoted[name] = cell("slerp-variants", "error", **row)
+        quoted[f"{name}_n"] = cell("slerp-variants", option, **row)
+    return quoted
+
+
 NAMED = ("slerp", "local-quintic", "kim", "smoothing-spline")
 
 
@@ -261,10 +289,12 @@ FINDINGS: tuple[tuple[str, Callable[[Ledger], tuple[Part, ...]]], ...] = (
     ("continuity", _cubic_fall),
     ("accuracy", _orders),
     ("fairness", _torque),
+    ("slerp-variants", _variants),
     ("denoise", _smoothing),
     ("denoise", _unsmoothed),
     ("excursion", _wander),
     ("excursion", _overshoot),
+    *recorded.SENTENCES,
 )
 
 

@@ -8,32 +8,30 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cache
-from typing import NamedTuple
 
 import numpy as np
 
 from quatspline.curve import Curve
 from quatspline.instruments.continuity import rounding
 from quatspline.instruments.derivatives import closed_forms, rates_since
-from quatspline.keyframes import Keyframes
+from quatspline.instruments.panels import (
+    HALVINGS,
+    MOST,
+    POINTS,
+    STENCIL_HALVINGS,
+    STENCIL_MOST,
+    Panels,
+    around,
+    gauss,
+    whole,
+)
 from quatspline.quaternion import FloatArray
-
-PANELS, POINTS = 2, 5
-"""Gauss-Legendre panels a segment to begin with, and points a panel."""
 
 AGREE = np.array([1e-7, 1e-6, 1e-7])
 """Two levels agree to these shares of torque, jerk and length; what is left is less, as the finer level counts."""
 
 DIVERGES = 0.1
 """A jerk that two levels still disagree on by this share, at the last, is infinite: alpha jumps in a segment."""
-
-HALVINGS, MOST = 20, 64
-"""Of a panel at most: what jumps inside a segment is then told to 1e-6 of the segment.  And panels a segment at
-most, on average over the curve: more would be refining rounding."""
-
-STENCIL_HALVINGS, STENCIL_MOST = 3, 16
-"""The same of curves known by stencils on their orientations, which reach over 5 % of a segment: narrower panels
-would not see more."""
 
 ESTIMATED, CANDIDATES, NEAR = 9, 8, 0.95
 """Places in a panel at which the peak is estimated, panels in which it is then looked for, and the share of the
@@ -43,33 +41,7 @@ GRID, ZOOMS = 5, 7
 """Samples of a search for the peak, and how often its interval is halved."""
 
 
-class _Panels(NamedTuple):
-    """Pieces of segments, not across a keyframe.
-
-    Times since the first keyframe at their left ends (p,), widths (p,), spacings of their keyframes (p,).
-    """
-
-    left: FloatArray
-    width: FloatArray
-    spacing: FloatArray
-
-    def times(self, u: FloatArray) -> FloatArray:
-        """Times (p, k) at shares u (k,) of the panels."""
-        return self.left[:, None] + self.width[:, None] * u
-
-    def picked(self, which: FloatArray) -> _Panels:
-        """Those of a mask or index."""
-        return _Panels(self.left[which], self.width[which], self.spacing[which])
-
-    def halves(self) -> _Panels:
-        """Twice as many, each pair in place of one."""
-        width = np.repeat(0.5 * self.width, 2)
-        left = np.repeat(self.left, 2)
-        left[1::2] += width[1::2]
-        return _Panels(left, width, np.repeat(self.spacing, 2))
-
-
-_Level = tuple[_Panels, FloatArray, FloatArray]
+_Level = tuple[Panels, FloatArray, FloatArray]
 """Panels, alpha at their nodes (p, POINTS, 3), and their integrals of torque, jerk and length (p, 3)."""
 
 
@@ -91,7 +63,7 @@ def fairness(curve: Curve) -> dict[str, float]:
 def _gathered(levels: list[_Level]) -> _Level:
     """The settled panels of all levels as one."""
     panels, alpha, integrals = zip(*levels, strict=True)
-    joined = _Panels(*(np.concatenate(column) for column in zip(*panels, strict=True)))
+    joined = Panels(*(np.concatenate(column) for column in zip(*panels, strict=True)))
     return joined, np.concatenate(alpha), np.concatenate(integrals)
 
 
@@ -103,7 +75,7 @@ def _settled(curve: Curve) -> Iterator[_Level]:
     knots = curve.keyframes.knots
     halvings, most = (HALVINGS, MOST) if closed_forms(curve) else (STENCIL_HALVINGS, STENCIL_MOST)
     span, budget = knots[-1], most * (len(knots) - 1)
-    coarse = _whole(curve.keyframes)
+    coarse = whole(curve.keyframes)
     before = _measured(curve, coarse)[1]
     done = np.zeros(3)
     for level in range(halvings + 1):
@@ -127,14 +99,9 @@ def _settled(curve: Curve) -> Iterator[_Level]:
         coarse, before = fine.picked(halves), integrals[halves]
 
 
-def _whole(keyframes: Keyframes) -> _Panels:
-    left, h = keyframes.inside(np.arange(PANELS) / PANELS), np.repeat(keyframes.spacings, PANELS)
-    return _Panels(left, h / PANELS, h)
-
-
-def _measured(curve: Curve, panels: _Panels) -> tuple[FloatArray, FloatArray]:
+def _measured(curve: Curve, panels: Panels) -> tuple[FloatArray, FloatArray]:
     """alpha at the nodes (p, POINTS, 3), and the integrals of torque, jerk and length (p, 3)."""
-    u, weights = _gauss()
+    u, weights = gauss()
     shape = (-1, POINTS, 3)
     omega, alpha = (x.reshape(shape) for x in rates_since(curve, panels.times(u).reshape(-1)))
     jerk = np.einsum("ij,pjk->pik", _derived(), alpha) / panels.width[:, None, None]
@@ -143,7 +110,7 @@ def _measured(curve: Curve, panels: _Panels) -> tuple[FloatArray, FloatArray]:
     return alpha, np.stack([panels.width * (x @ weights) for x in squares], axis=1)
 
 
-def _rounding(curve: Curve, panels: _Panels, integrals: FloatArray) -> FloatArray:
+def _rounding(curve: Curve, panels: Panels, integrals: FloatArray) -> FloatArray:
     """What rounding of the rates may leave in integrals (p, 3) of panels."""
     h, width = panels.spacing, panels.width
     speed, torque = (rounding(curve, order) / h**order for order in (1, 2))
@@ -162,7 +129,7 @@ def _peak_at_knots(curve: Curve) -> float:
     return float(_sizes(curve, np.append(knots[:-1], np.nextafter(knots[1:], 0.0))).max())
 
 
-def _peak_inside(curve: Curve, panels: _Panels, alpha: FloatArray) -> float:
+def _peak_inside(curve: Curve, panels: Panels, alpha: FloatArray) -> float:
     """The largest |alpha| in panels, looked for where the polynomial through the nodes is largest."""
     estimates = np.linalg.norm(np.einsum("ij,pjk->pik", _estimating(), alpha), axis=-1)
     highest = estimates.max(axis=1)
@@ -170,20 +137,12 @@ def _peak_inside(curve: Curve, panels: _Panels, alpha: FloatArray) -> float:
     likely = likely[highest[likely] >= NEAR * highest.max()]
     grid = panels.picked(likely).times(np.linspace(0.0, 1.0, ESTIMATED))
     grid[:, -1] = np.nextafter(grid[:, -1], 0.0)  # of this panel's segment, not of the next
-    low, high = _around(grid, estimates[likely])
+    low, high = around(grid, estimates[likely])
     for _ in range(ZOOMS):
         grid = np.linspace(low, high, GRID, axis=1)
         sizes = _sizes(curve, grid.reshape(-1)).reshape(grid.shape)
-        low, high = _around(grid, sizes)
+        low, high = around(grid, sizes)
     return float(sizes.max(initial=0.0))
-
-
-def _around(grid: FloatArray, sizes: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """The neighbours (p,) of the largest of sizes in rows of a grid (p, k), or it itself at an end."""
-    rows, best = np.arange(len(grid)), sizes.argmax(axis=1)
-    low, high = np.maximum(best - 1, 0), np.minimum(best + 1, grid.shape[1] - 1)
-    low, high = grid[rows, low], grid[rows, high]
-    return low, high
 
 
 def _sizes(curve: Curve, since: FloatArray) -> FloatArray:
@@ -194,16 +153,9 @@ def _sizes(curve: Curve, since: FloatArray) -> FloatArray:
 
 
 @cache
-def _gauss() -> tuple[FloatArray, FloatArray]:
-    """Nodes and weights on the unit panel."""
-    u, weights = np.polynomial.legendre.leggauss(POINTS)
-    return 0.5 + 0.5 * u, 0.5 * weights
-
-
-@cache
 def _derived() -> FloatArray:
     """Slopes (POINTS, POINTS) at a unit panel's nodes of the quartic through values there."""
-    u, powers = _gauss()[0], np.arange(POINTS)
+    u, powers = gauss()[0], np.arange(POINTS)
     derivatives = powers * u[:, None] ** np.maximum(powers - 1, 0)
     return np.asarray(derivatives @ _coefficients(), dtype=float)
 
@@ -217,4 +169,4 @@ def _estimating() -> FloatArray:
 
 @cache
 def _coefficients() -> FloatArray:
-    return np.asarray(np.linalg.inv(np.vander(_gauss()[0], increasing=True)), dtype=float)
+    return np.asarray(np.linalg.inv(np.vander(gauss()[0], increasing=True)), dtype=float)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 from itertools import pairwise
 from typing import Any
 
@@ -55,10 +56,10 @@ def errors(
     return angles, np.stack(off, axis=1)
 
 
-def row(motion: Motion, scheme: str, every: int) -> dict[str, Any]:
-    """Errors of one scheme over the joints that turn: medians and the worst, by name."""
+def row(motion: Motion, scheme: str, every: int, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Errors of one scheme over the joints that turn: medians and the worst, by name; all under "by_joint"."""
     began = time.perf_counter()
-    curve = motion.curve(scheme, every=every)
+    curve = motion.curve(scheme, every=every, **options)
     seconds = time.perf_counter() - began
     angles, ends = errors(motion, curve, left_out(motion, every))
     joints = [k for k in moving(motion) if motion.tracks[k] not in curve.failures]
@@ -74,6 +75,10 @@ def row(motion: Motion, scheme: str, every: int) -> dict[str, Any]:
         "largest_joint": motion.tracks[joints[farthest]],
         "end_rms": None if ends is None else float(np.sqrt((ends**2).mean())),
         "seconds": seconds,
+        "by_joint": [
+            {"joint": motion.tracks[k], "rms": a, "largest": b}
+            for k, a, b in zip(joints, rms.tolist(), largest.tolist(), strict=True)
+        ],
         "failed_joints": "; ".join(f"{name}: {why}" for name, why in curve.failures.items())
         or None,
     }

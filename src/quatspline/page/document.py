@@ -25,7 +25,8 @@ from quatspline.page.table1 import side_by_side
 ASSETS = Path(__file__).parent / "assets"
 SCRIPTS = (
     *("data", "theme", "figures", "tables", "plots"),
-    *("scenes", "geometry", "stage", "path", "strip", "player", "start"),
+    *("scenes", "geometry", "stage", "path", "strip", "clock", "player"),
+    *("recording", "wires", "replay", "start"),
 )
 """Scripts in the order that they are run."""
 
@@ -59,11 +60,13 @@ def document(
     """The whole page as text: the same for the same folder."""
     sampled = [player_data(scene) for scene in scenes]
     motions = [motion for motion in sampled if motion["curves"]]
-    shown = [_filled(section, folder, bool(motions)) for section in _sections(folder, parts)]
+    have = {kind for kind, some in (("scenes", motions), ("replays", folder.replays)) if some}
+    told = findings(folder.frame) if said is None else said
+    shown = [_filled(section, folder, have, told) for section in _sections(folder, parts)]
     context = {
         "title": title,
         "version": __version__,
-        "findings": _grouped(findings(folder.frame) if said is None else said),
+        "findings": _grouped([each for each in told if each.topic not in _apart(parts)]),
         "sections": [section for section in shown if section],
         "manifest": folder.manifest,
         "failures": folder.failures,
@@ -108,12 +111,23 @@ def _sections(folder: Folder, parts: Sequence[Section]) -> tuple[Section, ...]:
     return (*parts, other)
 
 
-def _filled(section: Section, folder: Folder, motions: bool) -> dict[str, Any] | None:
-    """A section with its tables, figures and plots; None if there are none."""
+def _filled(
+    section: Section, folder: Folder, have: set[str], told: Sequence[Finding]
+) -> dict[str, Any] | None:
+    """A section with its tables, figures, plots and findings; None if there is nothing to show."""
     tables = [_table(name, section, folder) for name in section.tables if name in folder.tables]
-    if not tables and not (section.needs_scenes and motions):
+    played = section.needs in have
+    if not tables and not played:
         return None
-    return {"section": section, "tables": tables, "made": _made(section, folder)}
+    own = [finding for finding in told if finding.topic == section.topic]
+    block = section.block if played or not section.needs else ""
+    made = _made(section, folder)
+    return {"section": section, "block": block, "tables": tables, "findings": own, "made": made}
+
+
+def _apart(parts: Sequence[Section]) -> set[str]:
+    """Topics of findings that stand in sections of their own."""
+    return {section.topic for section in parts if section.topic}
 
 
 def _made(section: Section, folder: Folder) -> Any:
@@ -196,6 +210,7 @@ def _data(folder: Folder, motions: list[dict[str, Any]]) -> Iterator[tuple[str, 
     for name, table in folder.tables.items():
         yield f"csv-{name}", table.text
     yield "scenes", motions
+    yield "replays", folder.replays
     yield "looks", {name: plots.scheme_look(name) for name in sorted(_schemes(folder, motions))}
     yield "columns", {name: _columns(name, table.columns) for name, table in folder.tables.items()}
     yield "rankings", {name: vars(ranking) for name, ranking in sections.RANKINGS.items()}

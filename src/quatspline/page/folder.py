@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 import re
 import reprlib
 from dataclasses import dataclass
@@ -11,7 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from quatspline.findings.findings import reader
+from quatspline.motion.replay import PARTS
 from quatspline.runs.manifest import MANIFEST, json_object
+from quatspline.runs.results import REPLAYS
 
 OWN_WORDS = {"table1": "Table 1", "edge-cases": "Edge cases"}
 """Names of tables that are not their name capitalised."""
@@ -94,6 +97,13 @@ class Folder:
             for path in found
         }
 
+    @cached_property
+    def replays(self) -> list[dict[str, Any]]:
+        """All recorded motions for the player, in the order of the files' names."""
+        return [
+            motion for path in sorted(self.path.glob(f"*{REPLAYS}")) for motion in _motions(path)
+        ]
+
     @property
     def failures(self) -> dict[str, str]:
         """Experiments that failed, with the reason."""
@@ -143,6 +153,18 @@ def _expect(where: str, value: Any, kind: type[Any], keys: tuple[str, ...]) -> N
     lacking = [key for key in keys if key not in value]
     if lacking:
         raise ValueError(f"{where}: {lacking[0]!r} is missing")
+
+
+def _motions(path: Path) -> list[dict[str, Any]]:
+    """Motions that `quatspline.motion.replay` made, refused if they are not."""
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise ValueError(f"{path}: not a file in JSON: {error}") from error
+    _expect(str(path), content, list, ())
+    for number, motion in enumerate(content):
+        _expect(f"{path}: motion {number}", motion, dict, PARTS)
+    return list(content)
 
 
 def _heading(markdown: str) -> tuple[str, str]:

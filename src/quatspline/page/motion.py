@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -16,6 +15,7 @@ from quatspline.figures.motions import VIEWS
 from quatspline.instruments.trials import reason
 from quatspline.keyframes import Keyframes
 from quatspline.quaternion import FloatArray
+from quatspline.system.packing import packed
 from quatspline.trajectories.paper import CASES
 
 SAMPLES, LEAST, MOST = 2400, 2, 60
@@ -126,11 +126,6 @@ def grid(keyframes: Keyframes) -> FloatArray:
     inner = keyframes.inside(np.arange(each) / each)
     left = knots[1:] - BEFORE * keyframes.spacings
     return np.sort(np.concatenate([inner, left, knots[-1:]]))
-
-
-def packed(values: Any, kind: str = "<f4") -> str:
-    """Base64 of an array's numbers, row by row."""
-    return base64.b64encode(np.ascontiguousarray(values, kind).tobytes()).decode("ascii")
 
 
 def _curves(scene: Scene) -> tuple[dict[str, Any], dict[str, str]]:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from quatspline.findings.recorded import TOPIC
+from quatspline.instruments.summary import ALL
 from quatspline.page.plots import Plot
 
 
@@ -17,7 +19,8 @@ class Section:
     tables : names of tables, each shown with its note and its figure
     plots : interactive plots of them
     block : a template of its own, `assets/blocks/<block>.html`
-    needs_scenes : whether the block shows motions
+    needs : what the block shows, if it is no table: "scenes" or "replays"
+    topic : of findings that stand here and not at the top
     folded : whether tables start folded (they hold what a figure draws)
     """
 
@@ -27,7 +30,8 @@ class Section:
     tables: tuple[str, ...] = ()
     plots: tuple[Plot, ...] = ()
     block: str = ""
-    needs_scenes: bool = False
+    needs: str = ""
+    topic: str = ""
     folded: bool = False
 
 
@@ -54,10 +58,27 @@ RANKINGS: dict[str, Ranking] = {
         False,
         "torque energy over the least of all schemes compared; less is better",
     ),
+    "kept": Ranking(
+        "rms_median",
+        False,
+        "the median over the joints of their rms angles at the frames left out; less is better",
+    ),
     "choosing": Ranking(
         "torque",
         False,
         "the median over the committed keyframe sets of the torque energy over the least possible; less is better",
+    ),
+    "reconstruct": Ranking(
+        "over_slerp",
+        False,
+        "the rms angle at the frames left out over slerp's, geometric mean over the joints; less is better",
+        {"clip": ALL},
+    ),
+    "reduce": Ranking(
+        "over_slerp",
+        False,
+        "the keyframes that are needed over slerp's, geometric mean over the joints; less is better",
+        {"clip": ALL},
     ),
     "excursion": Ranking(
         "wander_worst",
@@ -76,7 +97,7 @@ SECTIONS: tuple[Section, ...] = (
         "the path of the unit quaternion, with the tangents that arrive at each keyframe and leave it. Where they "
         "form a corner, the velocity jumps.",
         block="player",
-        needs_scenes=True,
+        needs="scenes",
     ),
     Section(
         "choosing",
@@ -114,7 +135,7 @@ SECTIONS: tuple[Section, ...] = (
         "ln q(t), half the rotation vector, in rad. Drag to turn, scroll to zoom; a click in the legend hides a "
         "curve or shows it.",
         block="logs",
-        needs_scenes=True,
+        needs="scenes",
     ),
     Section(
         "rates",
@@ -122,7 +143,7 @@ SECTIONS: tuple[Section, ...] = (
         "Norms of the body's rates along the motion; keyframes are marked. A curve that is C2 has no step in the "
         "lower strip.",
         block="rates",
-        needs_scenes=True,
+        needs="scenes",
     ),
     Section(
         "convergence",
@@ -154,8 +175,8 @@ SECTIONS: tuple[Section, ...] = (
     Section(
         "accuracy",
         "Accuracy",
-        "Error to an analytic motion against the keyframe spacing.",
-        ("accuracy",),
+        "Error to an analytic motion against the keyframe spacing; what stands in for slerp, against slerp.",
+        ("accuracy", "slerp-variants"),
         (
             Plot(
                 "accuracy",
@@ -223,30 +244,37 @@ SECTIONS: tuple[Section, ...] = (
             ),
         ),
     ),
+    Section(
+        "recorded",
+        "Recorded motion",
+        "What people record, rebuilt from every so many-th frame: the motion itself is pale, two schemes lie over it, "
+        "and below stands by what angle they are off.",
+        ("reconstruct", "reduce"),
+        (
+            Plot(
+                "reconstruct",
+                ("every",),
+                ("over_slerp", "rms_degrees", "largest_degrees", "end_cm", "omega", "alpha"),
+                facets=("clip", "filter"),
+                start={"clip": ALL, "filter": "none"},
+                log=(True, True),
+            ),
+            Plot(
+                "reduce",
+                ("error_degrees",),
+                ("over_slerp", "share", "per_second"),
+                facets=("clip", "filter"),
+                start={"clip": ALL, "filter": "none"},
+                log=(True, False),
+            ),
+        ),
+        block="recorded",
+        needs="replays",
+        topic=TOPIC,
+        folded=True,
+    ),
     Section("claims", "Claims and verdicts", "Each claim beside what was measured.", ("claims",)),
 )
 
 OTHER = Section("other", "Further measurements")
 """Tables of the folder that no section names."""
-
-_BLOCKS = {section.key: section for section in SECTIONS}
-
-OWN: tuple[Section, ...] = (
-    Section(
-        "compare",
-        "Schemes compared",
-        "One row a scheme on these keyframes. Sort by any column: the line above the table states the criterion.",
-        ("compare",),
-        (
-            Plot(
-                "compare",
-                ("seconds_per_sample", "seconds_set_up"),
-                ("torque_over_least", "jerk_over_least", "peak_over_least"),
-                "points",
-                log=(True, True),
-            ),
-        ),
-    ),
-    *(_BLOCKS[key] for key in ("player", "log-curves", "rates")),
-)
-"""The sections of a page for somebody's own keyframes."""

@@ -11,6 +11,7 @@ stem with hyphens.  It holds
 ``derive(run, read) -> DataFrame``  a table made of others of the folder, by name: run after them
 ``draw(table) -> Figure``        optional: the figure, drawn from the table as read from its file
 ``caption(table) -> str``        optional: what the figure shows
+``replays(run) -> list``         optional: motions for the page's player, each made by `quatspline.motion.replay`
 ``text(table) -> str``           optional: Markdown that follows the table in its Markdown copy
 ``FORMATS: dict[str, str]``      optional: format specifications of columns in the Markdown
 ``NOTE: str``                    optional: what a reader of the table must know
@@ -132,7 +133,7 @@ class Experiment:
     @property
     def outputs(self) -> list[str]:
         """How the names of the files that it may write end."""
-        drawn = {"draw": [".png", ".svg"], "caption": [".caption.txt"]}
+        drawn = {"draw": [".png", ".svg"], "caption": [".caption.txt"], "replays": [".replay.json"]}
         more = [end for name, ends in drawn.items() if hasattr(self.module, name) for end in ends]
         return [".csv", ".md", *more, ".error.txt"]
 
@@ -191,8 +192,9 @@ def fingerprint(runs: dict[str, Run]) -> str:
 
 
 def sources() -> str:
-    """A hash of the package's files, of all schemes, of all experiments and of the clips they run on."""
-    paths = {path for path in catalogue.PACKAGE.rglob("*") if "__pycache__" not in path.parts}
+    """A hash of the package's own files, of all schemes, of all experiments and of the clips they run on."""
+    others = {"__pycache__", "node_modules"}
+    paths = {path for path in catalogue.PACKAGE.rglob("*") if others.isdisjoint(path.parts)}
     paths |= {path for folder in catalogue.folders() for path in folder.glob("*.py")}
     folders = {path.parent for path in files().values()}  # experiments may share private modules
     paths |= {path for folder in folders for path in folder.glob("*.py")}

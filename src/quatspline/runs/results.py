@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +17,8 @@ if TYPE_CHECKING:
 __all__ = ["JOURNAL", "MANIFEST", "OUTPUTS", "PAGE", "Results", "markdown", "now"]
 
 PAGE = "report.html"
-OUTPUTS = (".csv", ".md", ".png", ".svg", ".caption.txt", ".error.txt")
+REPLAYS = ".replay.json"
+OUTPUTS = (".csv", ".md", ".png", ".svg", ".caption.txt", REPLAYS, ".error.txt")
 """What an experiment may leave in the folder, after its name."""
 
 CSV_FLOAT = "%.12g"
@@ -83,6 +85,10 @@ class Results(Store):
                 mpl.rc_context({"svg.hashsalt": "quatspline"}),
             ):
                 figure.savefig(aside, format=kind, dpi=DPI, metadata=metadata)
+
+    def replays(self, name: str, motions: Sequence[Mapping[str, Any]]) -> None:
+        """Write motions for the page's player as ``<name>.replay.json``."""
+        self.text(f"{name}{REPLAYS}", json.dumps(motions, separators=(",", ":")) + "\n")
 
     def outputs(self, name: str) -> dict[str, str]:
         """SHA-256 of the files that an experiment has in the folder."""

@@ -70,10 +70,12 @@ def ending(tell: Callable[[int], object]) -> Iterator[None]:
 
 def _cut_off_after(seconds: float, status: int, tell: Callable[[int], object]) -> None:
     def cut() -> None:
-        end_workers()
-        tell(status)
-        sys.stderr.flush()
-        os._exit(status)
+        try:
+            end_workers()
+            tell(status)
+            sys.stderr.flush()
+        finally:
+            os._exit(status)
 
     timer = threading.Timer(seconds, cut)
     timer.daemon = True

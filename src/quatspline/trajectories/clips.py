@@ -42,6 +42,16 @@ def names() -> list[str]:
     return sorted(files()) or [OWN]
 
 
+def each_kind() -> list[str]:
+    """The first clip of a skeleton and the first of one body, as far as there are such."""
+    found: dict[bool, str] = {}
+    for name in names():
+        found.setdefault(clip(name).skeleton is not None, name)
+        if len(found) == 2:
+            break
+    return [found[kind] for kind in (True, False) if kind in found]
+
+
 def files() -> dict[str, Path]:
     """The files of the folder by name; none where no folder is named."""
     found = {path.name: path for path in contents() if path.suffix.lower() in SUFFIXES}
@@ -72,6 +82,12 @@ def clip(name: str) -> Motion:
     if name not in known:
         raise ValueError(f"clip {name!r}: {nearest(name, [*known, *made])}")
     return _read(known[name])
+
+
+def middle(motion: Motion, frames: int) -> Motion:
+    """So many frames from the middle of a motion, or all of a shorter one."""
+    first = max(0, (len(motion.times) - frames) // 2)
+    return motion.frames(slice(first, first + frames))
 
 
 @cache

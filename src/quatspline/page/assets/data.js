@@ -78,7 +78,8 @@ quatspline.data = (() => {
 
   const floats = (text) => new Float32Array(bytes(text));
   const integers = (text) => new Uint16Array(bytes(text));
-  return { read, parseCsv, table, floats, integers, shown, save };
+  const signed = (text) => new Int16Array(bytes(text));
+  return { read, parseCsv, table, floats, integers, signed, shown, save };
 })();
 
 /* An element with attributes and children; text is never read as markup. */

@@ -1,57 +1,14 @@
 /* The player: two schemes on one motion, a timeline, and what all views show at one time. */
 "use strict";
-quatspline.Player = class {
+quatspline.Player = class extends quatspline.Clock {
   static SECONDS = [4, 20]; /* a motion lasts 1.5 s a segment, between these */
-  static SNAP = 0.006; /* a click this near to a keyframe, as a share of the whole, means the keyframe */
-  static STEPS = 200; /* arrow keys step by this share */
-  static DASH = [7, 5];
 
   constructor(place, motions) {
-    Object.assign(this, { place, motions, motion: null, time: 0, playing: false });
-    this.calm = window.matchMedia("(prefers-reduced-motion: reduce)");
-    this.controls = Object.fromEntries([...place.querySelectorAll("[name]")].map((c) => [c.name || c.getAttribute("name"), c]));
-    const redraw = () => this.draw(), turned = (view) => this._turned(view);
-    this.stages = [...place.querySelectorAll("canvas.stage")].map((c) => new quatspline.Stage(c, turned));
-    this.path = new quatspline.PathView(place.querySelector("canvas.path"), redraw);
-    this.strips = [...place.querySelectorAll("canvas.strip")].map((c) => new quatspline.Strip(c, (share) => this.scrub(share * this.motion.span)));
-    this._listen();
-    this._fill(this.controls.scene, motions.map((m, i) => [String(i), m.title]));
+    super(place, motions);
+    this.stages = [...place.querySelectorAll("canvas.stage")].map((c) => new quatspline.Stage(c, (view) => this._turned(view)));
+    this.path = new quatspline.PathView(place.querySelector("canvas.path"), () => this.draw());
+    this._redraw("a", "b", "layout", "chart", "follow");
     this.choose(0);
-    quatspline.theme.follow(redraw);
-  }
-
-  /* -- controls -- */
-
-  _fill(select, options) {
-    select.replaceChildren(...options.map(([value, text]) => quatspline.element("option", { value }, text)));
-  }
-
-  _listen() {
-    const { controls } = this;
-    controls.scene.addEventListener("change", () => this.choose(Number(controls.scene.value)));
-    for (const name of ["a", "b", "layout", "chart", "follow"]) controls[name].addEventListener("change", () => this.draw());
-    controls.play.addEventListener("click", () => (this.playing ? this.pause() : this.play()));
-    controls.previous.addEventListener("click", () => this.jump(-1));
-    controls.next.addEventListener("click", () => this.jump(1));
-    controls.time.addEventListener("input", () => this.scrub(Number(controls.time.value)));
-    this.place.addEventListener("keydown", (event) => this._key(event));
-  }
-
-  _key(event) {
-    const kind = event.target.tagName;
-    const own = kind === "SELECT" || (kind === "INPUT" && event.target.type === "checkbox");
-    if (own || event.altKey || event.ctrlKey || event.metaKey) return;
-    if (event.key === " " && kind === "BUTTON") return; /* the button's own */
-    const step = this.motion.span / quatspline.Player.STEPS;
-    const action = {
-      " ": () => (this.playing ? this.pause() : this.play()),
-      ArrowLeft: () => this.seek(this.time - step), ArrowRight: () => this.seek(this.time + step),
-      ArrowDown: () => this.seek(this.time - step), ArrowUp: () => this.seek(this.time + step),
-      PageUp: () => this.jump(-1), PageDown: () => this.jump(1), Home: () => this.seek(0), End: () => this.seek(this.motion.span),
-    }[event.key];
-    if (!action) return;
-    event.preventDefault();
-    action();
   }
 
   _turned(view) {
@@ -62,20 +19,9 @@ quatspline.Player = class {
   /* -- the motion -- */
 
   choose(index) {
-    this.pause();
-    this.motion = this.motions[index];
-    const { controls, motion } = this;
-    const before = [controls.a.value, controls.b.value];
-    const options = motion.schemes.map((name) => [name, name]);
-    ["a", "b"].forEach((side, i) => {
-      this._fill(controls[side], options);
-      controls[side].value = motion.schemes.includes(before[i]) ? before[i] : motion.pair[i] || motion.schemes[0];
-    });
-    Object.assign(controls.time, { min: 0, max: motion.span });
-    this.stages.forEach((stage) => { stage.turn = [...motion.view]; });
+    this._open(index);
+    this.stages.forEach((stage) => { stage.turn = [...this.motion.view]; });
     this._marks();
-    const refused = Object.entries(motion.refused).map(([name, why]) => `${name} (${why})`);
-    this.place.querySelector(".refused").textContent = refused.length ? `Not offered here: ${refused.join("; ")}.` : "";
     this.seek(0);
   }
 
@@ -89,70 +35,13 @@ quatspline.Player = class {
     this.place.querySelector(".marks").replaceChildren(...(few ? buttons : []));
   }
 
-  /* -- time -- */
-
-  seek(t) {
-    const { knots, span } = this.motion;
-    this.time = Math.min(Math.max(t, 0), span);
-    const near = this.motion.keyframeAt(this.time);
-    if (near >= 0) this.time = knots[near];
-    this.draw();
-  }
-
-  /* As `seek`, caught by a keyframe that is near. */
-  scrub(t) {
-    const near = this.motion.knots.find((knot) => Math.abs(knot - t) < quatspline.Player.SNAP * this.motion.span);
-    this.seek(near ?? t);
-  }
-
-  jump(by) {
-    const { knots, span } = this.motion, slack = 1e-9 * span;
-    const later = knots.filter((knot) => knot > this.time + slack), earlier = knots.filter((knot) => knot < this.time - slack);
-    this.seek(by > 0 ? later[0] ?? span : earlier[earlier.length - 1] ?? 0);
-  }
-
-  play() {
-    if (this.playing) return;
-    if (this.time >= this.motion.span) this.time = 0;
-    this.playing = true;
-    this.controls.play.textContent = "Pause";
-    if (this.calm.matches) this._step();
-    else requestAnimationFrame((now) => this._frame(now, now));
-  }
-
-  pause() {
-    this.playing = false;
-    this.controls.play.textContent = "Play";
-  }
-
   get pace() {
     const [least, most] = quatspline.Player.SECONDS;
     const seconds = Math.min(Math.max(1.5 * (this.motion.knots.length - 1), least), most);
     return Number(this.controls.speed.value) * this.motion.span / seconds;
   }
 
-  _frame(now, last) {
-    if (!this.playing) return;
-    const next = this.time + this.pace * (now - last) / 1000, { span, closed } = this.motion;
-    this.seek(closed && next > span ? next % span : next);
-    if (!closed && this.time >= span) this.pause();
-    else requestAnimationFrame((later) => this._frame(later, now));
-  }
-
-  /* For readers who asked for less motion: from keyframe to keyframe, without movement between. */
-  _step() {
-    if (!this.playing) return;
-    if (this.time >= this.motion.span) { this.pause(); return; }
-    this.jump(1);
-    setTimeout(() => this._step(), 1000 / Number(this.controls.speed.value));
-  }
-
   /* -- drawing -- */
-
-  _sides() {
-    const { theme } = quatspline;
-    return [["a", []], ["b", quatspline.Player.DASH]].map(([side, dash]) => ({ side, dash, color: theme.color(side), curve: this.motion.curve(this.controls[side].value) }));
-  }
 
   _mover({ curve, color }) {
     const { motion, time } = this, { multiply, conjugate, scaled } = quatspline.geometry;
@@ -163,7 +52,7 @@ quatspline.Player = class {
   }
 
   draw() {
-    if (!this.motion || !this.controls) return;
+    if (!this.motion) return;
     const { controls, motion, time } = this, sides = this._sides();
     const over = controls.layout.value === "over", follow = controls.follow.checked;
     const grid = this.place.querySelector(".bodies");

@@ -1,7 +1,33 @@
-/* Motions as the player reads them: sampled curves of several schemes on common times. */
+/* Motions as the players read them: sampled curves of several schemes on common times. */
 "use strict";
-quatspline.Motion = class {
+
+/* What is known at times `t` (from 0 to `span`), keyframes being at `knots`. */
+quatspline.Sampled = class {
+  /* The last sample not after t, and the share of the way to the next. */
+  locate(t) {
+    let low = 0, high = this.t.length - 1;
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (this.t[middle] <= Math.fround(t)) low = middle; else high = middle - 1;
+    }
+    const next = Math.min(low + 1, this.t.length - 1), gap = this.t[next] - this.t[low];
+    return { i: low, next, u: gap > 0 ? Math.min(Math.max((t - this.t[low]) / gap, 0), 1) : 0 };
+  }
+
+  /* Samples (rows of `list`, or numbers) between the two neighbours. */
+  between(list, t) {
+    const { i, next, u } = this.locate(t);
+    const mix = (a, b) => (u === 0 ? a : a + u * (b - a));
+    return Array.isArray(list[i]) ? list[i].map((a, k) => mix(a, list[next][k])) : mix(list[i], list[next]);
+  }
+
+  /* The number of a keyframe at this time, or -1. */
+  keyframeAt(t) { return this.knots.findIndex((knot) => Math.abs(knot - t) <= 1e-9 * this.span); }
+};
+
+quatspline.Motion = class extends quatspline.Sampled {
   constructor(packed) {
+    super();
     const { floats, integers } = quatspline.data;
     Object.assign(this, { name: packed.name, title: packed.title, start: packed.start, closed: packed.closed });
     Object.assign(this, { knots: packed.knots, keyframes: packed.keyframes, view: packed.view, scale: packed.scale });
@@ -36,31 +62,10 @@ quatspline.Motion = class {
     return this.known.get(name);
   }
 
-  /* The last sample not after t, and the share of the way to the next. */
-  locate(t) {
-    let low = 0, high = this.t.length - 1;
-    while (low < high) {
-      const middle = (low + high + 1) >> 1;
-      if (this.t[middle] <= Math.fround(t)) low = middle; else high = middle - 1;
-    }
-    const next = Math.min(low + 1, this.t.length - 1), gap = this.t[next] - this.t[low];
-    return { i: low, next, u: gap > 0 ? Math.min(Math.max((t - this.t[low]) / gap, 0), 1) : 0 };
-  }
-
   orientation(name, t) {
     const { i, next, u } = this.locate(t), { q } = this.curve(name);
     return u === 0 ? q[i] : quatspline.geometry.slerp(q[i], q[next], u);
   }
-
-  /* Samples (rows of `list`, or numbers) between the two neighbours. */
-  between(list, t) {
-    const { i, next, u } = this.locate(t);
-    const mix = (a, b) => (u === 0 ? a : a + u * (b - a));
-    return Array.isArray(list[i]) ? list[i].map((a, k) => mix(a, list[next][k])) : mix(list[i], list[next]);
-  }
-
-  /* The number of a keyframe at this time, or -1. */
-  keyframeAt(t) { return this.knots.findIndex((knot) => Math.abs(knot - t) <= 1e-9 * this.span); }
 };
 
 /* Log-curves in space and strips of the rates, of all schemes, by Plotly. */

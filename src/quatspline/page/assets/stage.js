@@ -3,6 +3,8 @@
 
 /* A canvas at the screen's resolution, turned by dragging or by Shift and the arrows. */
 quatspline.View = class {
+  static FONT = "12px system-ui, sans-serif";
+
   constructor(canvas, changed) {
     this.canvas = canvas;
     this.pen = canvas.getContext("2d");
@@ -102,7 +104,7 @@ quatspline.View = class {
   }
 
   text(label, [x, y], color, align = "left") {
-    Object.assign(this.pen, { font: "12px system-ui, sans-serif", fillStyle: color, textAlign: align, textBaseline: "middle" });
+    Object.assign(this.pen, { font: quatspline.View.FONT, fillStyle: color, textAlign: align, textBaseline: "middle" });
     this.pen.fillText(label, x, y);
   }
 };

@@ -19,6 +19,9 @@
     quatspline.player = new quatspline.Player(player, motions);
   }
 
+  const recorded = document.getElementById("replay");
+  if (recorded) quatspline.replay = new quatspline.Replay(recorded, quatspline.data.read("replays").map((packed) => new quatspline.Recording(packed)));
+
   document.querySelectorAll("a.quote").forEach((link) => link.addEventListener("click", (event) => {
     const place = document.getElementById(`table-${link.dataset.table}`);
     if (!place) return;

@@ -1,14 +1,16 @@
-/* A rate over time for both schemes, with keyframes and the cursor. */
+/* A rate or an error over time for both schemes, with keyframes and the cursor. */
 "use strict";
 quatspline.Strip = class {
   static EDGE = 8; /* half the thumb of the slider above, so that times stand under each other */
+  static NARROW = 14; /* pixels from keyframe to keyframe below which a strip that may be divided shows a part at a time */
 
   constructor(canvas, seek) {
     this.view = new quatspline.View(canvas, () => this.again && this.again());
     this.rate = canvas.dataset.rate;
+    this.part = [0, 1];
     const to = (event) => {
-      const box = canvas.getBoundingClientRect(), edge = quatspline.Strip.EDGE;
-      seek((event.clientX - box.left - edge) / (box.width - 2 * edge));
+      const box = canvas.getBoundingClientRect(), edge = quatspline.Strip.EDGE, [from, until] = this.part;
+      seek(from + (until - from) * (event.clientX - box.left - edge) / (box.width - 2 * edge));
     };
     canvas.addEventListener("pointerdown", to);
     canvas.addEventListener("pointermove", (event) => event.buttons === 1 && to(event));
@@ -19,17 +21,27 @@ quatspline.Strip = class {
     const { view } = this, { theme, data } = quatspline;
     const values = curves.map(({ curve }) => curve.norms[this.rate]);
     const top = Math.max(...values.map((list) => list.reduce((m, v) => Math.max(m, v || 0), 0))) || 1;
+    this.part = this._part(motion, t);
     view.clear();
-    motion.knots.forEach((knot) => this._vertical(motion, knot, theme.color("line"), 1));
+    const [from, until] = this.part.map((share) => share * motion.span);
+    motion.knots.forEach((knot) => knot >= from && knot <= until && this._vertical(motion, knot, theme.color("line"), 1));
     values.forEach((list, i) => this._line(motion, list, top, curves[i]));
-    view.text(data.shown(top), [quatspline.Strip.EDGE + 2, 9], theme.color("muted"));
+    view.text(data.shown(top) + (view.canvas.dataset.unit || ""), [quatspline.Strip.EDGE + 2, 9], theme.color("muted"));
     this._vertical(motion, t, theme.color("text"), 1.4);
     values.forEach((list, i) => view.dot(this._at(motion, t, motion.between(list, t), top), 4, curves[i].color, theme.color("ground")));
   }
 
+  /* The shares of the whole between which the strip shows it: all, or the part that holds the cursor. */
+  _part(motion, t) {
+    const room = (this.view.width - 2 * quatspline.Strip.EDGE) / quatspline.Strip.NARROW;
+    const parts = motion.divided ? Math.max(Math.ceil((motion.knots.length - 1) / room), 1) : 1;
+    const part = Math.min(Math.floor(parts * t / motion.span), parts - 1);
+    return [part / parts, (part + 1) / parts];
+  }
+
   _at(motion, t, value, top) {
-    const { EDGE } = quatspline.Strip, { width, height } = this.view;
-    return [EDGE + (width - 2 * EDGE) * t / motion.span, height - 3 - (height - 22) * value / top];
+    const { EDGE } = quatspline.Strip, { width, height } = this.view, [from, until] = this.part;
+    return [EDGE + (width - 2 * EDGE) * (t / motion.span - from) / (until - from), height - 3 - (height - 22) * value / top];
   }
 
   _vertical(motion, t, color, width) {
@@ -39,6 +51,8 @@ quatspline.Strip = class {
 
   _line(motion, list, top, { color, dash }) {
     if (list.some(Number.isNaN)) return; /* a scheme without this rate */
-    this.view.stroke(list.map((v, i) => this._at(motion, motion.t[i], v, top)), color, 2, dash);
+    const [from, until] = this.part.map((share) => motion.locate(share * motion.span));
+    const points = list.slice(from.i, until.next + 1).map((v, i) => this._at(motion, motion.t[from.i + i], v, top));
+    this.view.stroke(points, color, 2, dash);
   }
 };

@@ -14,13 +14,20 @@ quatspline.theme = (() => {
     try { localStorage.setItem(KEY, look); } catch { /* the look lasts as long as the page */ }
   }
 
+  /* Colours of the look; asking for a computed style costs more than all else that a frame draws. */
+  const colors = new Map();
+  function color(name) {
+    if (!colors.has(name)) colors.set(name, getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim());
+    return colors.get(name);
+  }
+
   function apply(look) {
+    colors.clear();
     document.documentElement.dataset.look = look;
     button.setAttribute("aria-pressed", String(look === "dark"));
     followers.forEach((follow) => follow(look));
   }
 
-  const color = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
   const look = () => document.documentElement.dataset.look;
   button.addEventListener("click", () => {
     const next = look() === "dark" ? "light" : "dark";

@@ -1,0 +1,50 @@
+"""Figures of schemes on a skeleton: what they make of its joints at the frames left out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from quatspline.figures import style
+from quatspline.figures.heat import ROW, scheme_rows
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+
+def spans(table: pd.DataFrame) -> Figure:
+    """A scheme a row, the best on top: from the joints' median to the worst joint, and the largest angle."""
+    rows = table[table["rms_median"].notna()]
+    fig, panels = style.axes(style.COLUMN, 0.7 + ROW * max(len(rows), 3))
+    ax = panels[0, 0]
+    for height, row in enumerate(rows.to_dict("records")):
+        median, worst, largest = np.degrees(
+            [row[k] for k in ("rms_median", "rms_worst", "largest")]
+        )
+        color = style.scheme_style(str(row["scheme"]))["color"]
+        ax.plot([median, worst], [height, height], color=color, lw=2.0, solid_capstyle="butt")
+        ax.plot(median, height, "o", color=color, ms=4.0)
+        ax.plot(largest, height, "|", color=color, ms=6.0)
+    ax.set(xscale="log", xlabel="degrees at frames left out")
+    scheme_rows(ax, [str(name) for name in rows["scheme"]])
+    return fig
+
+
+def by_joint(joints: pd.DataFrame, schemes: Sequence[str]) -> Figure:
+    """A joint a row, the worst on top: its rms angle by each of a few schemes."""
+    rows = joints[joints["scheme"].isin(list(schemes))]
+    order = rows.groupby("joint")["rms"].mean().sort_values(ascending=False).index
+    places = {str(joint): height for height, joint in enumerate(order)}
+    fig, panels = style.axes(style.COLUMN, 1.0 + ROW * max(len(order), 3))
+    ax = panels[0, 0]
+    for name in schemes:
+        own = rows[rows["scheme"] == name]
+        looks = style.scheme_style(name) | {"linestyle": "", "markersize": 4.0}
+        ax.plot(np.degrees(own["rms"]), own["joint"].map(places), label=name, **looks)
+    ax.set(xscale="log", xlabel="rms angle (degrees) at frames left out")
+    scheme_rows(ax, list(places))
+    style.legend_of(fig, ax, 2)
+    return fig
