@@ -55,6 +55,8 @@ class _Worker:
         """How the process ended, in words, and whether that says nothing of the task."""
         self.process.join()
         code = self.process.exitcode or 0
+        if not self.ready:
+            return f"the process did not come to begin it: {ended_by(code)}", True
         return f"it ended its process: {ended_by(code)}", code == KILLED
 
 
