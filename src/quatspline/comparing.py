@@ -16,8 +16,12 @@ from quatspline.catalogue import scheme, schemes
 from quatspline.curve import Curve
 from quatspline.engines.engine import always_compiled
 from quatspline.instruments.continuity import jumps, measured_continuity, rounding, speeds
+from quatspline.instruments.curvature import curvature_energy
+from quatspline.instruments.derivatives import closed_forms
+from quatspline.instruments.extent import extent
 from quatspline.instruments.fairness import fairness
 from quatspline.instruments.rescue import solved
+from quatspline.instruments.told_noise import told_noise
 from quatspline.instruments.trials import Row, attempted, facts
 from quatspline.keyframes import Keyframes
 from quatspline.options import among
@@ -32,19 +36,28 @@ TOLERANCE = 1e-9
 """Of iterative schemes, in rad."""
 
 ENERGIES = ("torque", "jerk", "peak")
+MET = 1e-6
+"""Largest angle at a keyframe, in rad, that counts as passing through it."""
+
+DEGREES = ("excursion", "hold_rotation", "peak_rate", "peak_acceleration")
 TITLE = "Comparison on your keyframes"
 NOTE = (
     "continuity is k of C^k as measured on these keyframes; misses the largest angle at a keyframe (rad); torque the "
     "integral of |alpha|^2, jerk that of |alpha'|^2, peak the largest |alpha|, infinite where the velocity jumps, each "
-    "also over the least here; key_speed the least speed at an inner keyframe, peak_speed the largest, over the mean; "
-    "length what the curve turns, keyframes_length the sum of the steps between keyframes (rad). Iterative schemes "
-    "solve to 1e-9 by solver; note says where the published iteration failed and another found the curve. Every "
-    "segment is measured, however many there are; failure says why a scheme was not. Compare seconds within this "
-    "table only."
+    "also over the least of curves that pass through the keyframes; excursion the largest angle off the arcs between "
+    "keyframes, hold_rotation that from the keyframe during a hold (degrees); peak_rate and peak_acceleration the "
+    "largest |omega| and |alpha| in degrees; lookahead how many keyframes after a segment's own two shape it; "
+    "curvature the energy of the path's bending (1/rad), of closed forms alone; noise what the keyframes are told to "
+    "have (degrees an axis, 0 for none); key_speed the least speed at an inner keyframe, peak_speed the largest, over "
+    "the mean; length what the curve turns, keyframes_length the sum of the steps between keyframes (rad). Iterative "
+    "schemes solve to 1e-9 by solver; note says where the published iteration failed and another found the curve. "
+    "Every segment is measured, however many there are; failure says why a scheme was not. Compare seconds within "
+    "this table only."
 )
 FORMATS = {
     "misses": ".1e",
     **{f"{name}_over_least": ".4f" for name in ENERGIES},
+    **dict.fromkeys(DEGREES, ".3g"),
     "seconds_set_up": ".2e",
     "seconds_per_sample": ".2e",
 }
@@ -68,9 +81,11 @@ def compare(
     Returns
     -------
     DataFrame with the columns scheme, continuity, misses, torque, jerk, peak, length (rad), those
-    energies over the least here, keyframes_length (rad, the same in every row), key_speed, peak_speed,
-    support, solver, iterations, rates, version, note, failure and the timings seconds_set_up and
-    seconds_per_sample; sorted by torque, failures last.  ``failure`` says why a scheme was not
+    energies over the least of curves that pass through the keyframes, excursion and hold_rotation
+    (degrees), peak_rate (degrees/t), peak_acceleration (degrees/t^2), curvature (1/rad), keyframes_length
+    (rad) and noise (degrees), the same in every row, key_speed, peak_speed, support, lookahead, solver,
+    iterations, rates, version, note, failure and the timings seconds_set_up and seconds_per_sample;
+    sorted by torque, failures last.  ``failure`` says why a scheme was not
     measured, what is measured in its row being NaN; it is NaN where one was.  ``note`` says where a
     curve was not found by the published iteration but by the options of `Curve.rescue`.
 
@@ -117,17 +132,21 @@ def compared(
         rows.append({"scheme": name} | row)
     table = pd.DataFrame(rows).reindex(columns=COLUMNS)
     table["keyframes_length"] = _steps(keyframes)
+    table["noise"] = np.degrees(told_noise(keyframes))
     for name, seconds in seconds_of(keyframes, curves).items():
         table.loc[table["scheme"] == name, list(seconds)] = list(seconds.values())
     for name in ENERGIES:
-        table[f"{name}_over_least"] = _over_least(table[name])
+        table[f"{name}_over_least"] = _over_least(table[name], table["misses"] <= MET)
     table = table.sort_values(["torque", "scheme"], na_position="last", ignore_index=True)
     return table, curves
 
 
-def _over_least(values: pd.Series) -> pd.Series:
-    """Multiples of the least, infinite ones of any; where that is 0, 1 for it and infinity for all else."""
-    least = values.min()
+def _over_least(values: pd.Series, passes: pd.Series) -> pd.Series:
+    """Multiples of the least of those that pass; where that is 0, 1 for none and infinity for all else.
+
+    What passes near keyframes only may need less than any curve through them.
+    """
+    least = values[passes].min() if passes.any() else values.min()
     if np.isinf(least):
         return values
     if least > 0.0:
@@ -139,7 +158,8 @@ COLUMNS = [
     *("scheme", "continuity", "misses"),
     *(f"{name}_over_least" for name in ENERGIES),
     *("key_speed", "peak_speed", *ENERGIES, "length", "keyframes_length"),
-    *("support", "solver", "iterations", "rates", "version"),
+    *(*DEGREES, "curvature", "noise"),
+    *("support", "lookahead", "solver", "iterations", "rates", "version"),
     *("seconds_set_up", "seconds_per_sample", "note", "failure"),
 ]
 
@@ -163,7 +183,10 @@ def _row(name: str, keyframes: Keyframes, curves: dict[str, Curve]) -> list[Row]
         **fair,
         "key_speed": pace["least_key_speed"],
         "peak_speed": pace["peak_speed"],
-        "support": "all" if curve.support is None else str(curve.support),
+        **_asked_of_a_body(curve, smooth, float(fair["peak"])),
+        "curvature": _bending(curve, smooth),
+        "support": _or_all(curve.support),
+        "lookahead": _or_all(curve.lookahead),
         "iterations": report.iterations if report else None,
         "solver": report.method if report else None,
         "note": note,
@@ -171,6 +194,23 @@ def _row(name: str, keyframes: Keyframes, curves: dict[str, Curve]) -> list[Row]
     }
     curves[name] = curve  # of what failed, no seconds
     return [row]
+
+
+def _or_all(count: int | None) -> str:
+    return "all" if count is None else str(count)
+
+
+def _asked_of_a_body(curve: Curve, smooth: int, peak: float) -> Row:
+    """Columns in degrees; a curve that leaps has no rate."""
+    row = extent(curve) | {"peak_acceleration": float(np.degrees(peak))}
+    return row if smooth >= 0 else row | {"peak_rate": np.inf}
+
+
+def _bending(curve: Curve, smooth: int) -> float:
+    """The curvature energy, infinite at corners; stencils on libraries' orientations would take too long."""
+    if not closed_forms(curve):
+        return np.nan
+    return np.inf if smooth < 1 else curvature_energy(curve).energy
 
 
 def _above_rounding(curve: Curve, fair: Row) -> Row:

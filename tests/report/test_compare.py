@@ -86,7 +86,7 @@ def test_bad_input_is_refused() -> None:
 
 def test_every_number_of_the_recommendation_is_a_cell(table: pd.DataFrame) -> None:
     found = recommendation(table)
-    assert found[0].text.startswith("Take local-quintic: ")
+    assert found[0].text.startswith("Take local-quintic (ours): ")
     quotes = [part for finding in found for part in finding.parts if isinstance(part, Quote)]
     assert quotes
     for quote in quotes:

@@ -6,6 +6,7 @@ import argparse
 import math
 from collections.abc import Callable
 from contextlib import suppress
+from fractions import Fraction
 from pathlib import Path
 from typing import Any, Literal, NoReturn
 
@@ -67,7 +68,27 @@ def _add_compare(commands: Any) -> None:
     compare.add_argument("--keep", type=_count, metavar="K", help=kept)
     where = "for tables, figures and the page; by default KEYFRAMES-compared here"
     compare.add_argument("--out", type=Path, metavar="DIR", help=where)
+    _add_needs(compare)
     _add_force(compare)
+
+
+def _add_needs(compare: argparse.ArgumentParser) -> None:
+    """What a scheme must have to be recommended."""
+    needs = compare.add_argument_group(
+        "needs", "Schemes that lack one are not recommended, and are named with what they have."
+    )
+    needs.add_argument("--smooth", type=int, choices=(0, 1, 2), help="k of C^k, as measured")
+    local = "a changed keyframe changes the curve nearby only"
+    needs.add_argument("--local", action="store_true", help=local)
+    causal = "keyframes after a segment's own two that a curve may wait for"
+    needs.add_argument("--causal", type=_frames, metavar="N", help=causal)
+    for name, unit in (("rate", "degrees/s"), ("accel", "degrees/s^2")):
+        told = f"the largest |{'omega' if name == 'rate' else 'alpha'}|, {unit}"
+        needs.add_argument(f"--max-{name}", type=_rate, metavar="DEG", help=told)
+    off = "how far the curve may leave the arcs between keyframes, degrees"
+    needs.add_argument("--max-excursion", type=_least, metavar="DEG", help=off)
+    unit = "what the file's times count, such as ms or '1/30 s'; by default seconds, or what the file says"
+    needs.add_argument("--time-unit", type=_unit, metavar="UNIT", help=unit)
 
 
 def _add_sample(commands: Any) -> None:
@@ -169,7 +190,22 @@ def _angle(text: str) -> float:
     raise argparse.ArgumentTypeError(f"{text!r}: a positive angle with its unit, as 0.5deg")
 
 
+SECONDS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0}
+
+
+def _unit(text: str) -> float:
+    """Seconds of a unit of time, of several or of a fraction of one."""
+    number, _, name = text.strip().rpartition(" ")
+    with suppress(ValueError, ZeroDivisionError):
+        seconds = float(Fraction(number or 1)) * SECONDS.get(name, math.nan)
+        if 0.0 < seconds < math.inf:
+            return seconds
+    units = ", ".join(SECONDS)
+    raise argparse.ArgumentTypeError(f"{text!r}: one of {units} is expected, or as in '1/30 s'")
+
+
 _rate = _number(float, lambda value: 0.0 < value < math.inf, "a positive number")
+_least = _number(float, lambda value: 0.0 <= value < math.inf, "a number, at least 0,")
 MOST = 2**63 - 1
 """Of what is counted: beyond, a number is a slip of the keyboard and fits into no array."""
 

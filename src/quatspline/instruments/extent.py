@@ -1,0 +1,54 @@
+"""What a curve asks of the body that follows it, in degrees: how fast, how far off the way, how much during holds."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from quatspline.curve import Curve
+from quatspline.instruments.derivatives import rates_since
+from quatspline.instruments.excursion import excursion
+from quatspline.instruments.panels import around
+from quatspline.instruments.trials import Row
+from quatspline.quaternion import FloatArray
+
+GRID, CANDIDATES = 9, 8
+"""Samples a segment, its ends included, and the fastest segments that are then looked into."""
+FINER, ZOOMS = 5, 7
+"""Samples of that search, and how often its interval is halved: the peak is then off by its curvature times
+(h / 1000)^2 / 2."""
+
+
+def extent(curve: Curve) -> Row:
+    """Columns of a single-track curve, all in degrees; less is better.
+
+    excursion: the largest distance to the arc between neighbouring keyframes, of segments that move;
+    hold_rotation: the largest angle from the keyframe while two equal ones follow each other, NaN where
+    none do; peak_rate: the largest |omega| (degrees/t).
+    """
+    found = excursion(curve)
+    off, hold = np.degrees(found.off), found.hold
+    return {
+        "excursion": float(off[~hold].max(initial=0.0)),
+        "hold_rotation": float(off[hold].max()) if hold.any() else np.nan,
+        "peak_rate": float(np.degrees(peak_rate(curve))),
+    }
+
+
+def peak_rate(curve: Curve) -> float:
+    """The largest |omega| of a single-track curve, rad/t, on both sides of keyframes too."""
+    knots = curve.keyframes.knots
+    grid = curve.keyframes.inside(np.linspace(0.0, 1.0, GRID)).reshape(-1, GRID)
+    grid[:, -1] = np.nextafter(knots[1:], 0.0)  # of this segment, not of the next
+    speeds = _speeds(curve, grid)
+    most, likely = float(speeds.max()), np.argsort(speeds.max(axis=1))[-CANDIDATES:]
+    grid, speeds = grid[likely], speeds[likely]
+    for _ in range(ZOOMS):
+        low, high = around(grid, speeds)
+        grid = np.linspace(low, high, FINER, axis=1)
+        speeds = _speeds(curve, grid)
+    return max(most, float(speeds.max()))
+
+
+def _speeds(curve: Curve, since: FloatArray) -> FloatArray:
+    omega = rates_since(curve, since.reshape(-1))[0]
+    return np.asarray(np.linalg.norm(omega, axis=-1).reshape(since.shape), dtype=float)
