@@ -157,7 +157,7 @@ def _run(arguments: argparse.Namespace) -> int:
 
 
 def _compare(arguments: argparse.Namespace) -> int:
-    from quatspline.cli import compare, joints, recorded, words
+    from quatspline.cli import asked, compare, joints, recorded, words
     from quatspline.runs.results import Results
 
     # A wrong name is told before a long file is read.
@@ -167,6 +167,10 @@ def _compare(arguments: argparse.Namespace) -> int:
     if not body and arguments.keep is None:
         told = f"{len(motion.tracks)} tracks are compared at the frames that --keep K leaves out"
         raise ValueError(f"{arguments.keyframes}: {told}")
+    needs = asked.needs(arguments, motion)
+    if not body and needs.limits:
+        one = f"{needs.limits[0].flag} is for one track, not for {len(motion.tracks)}"
+        raise ValueError(f"{arguments.keyframes}: {one}")
     out = arguments.out or Path(f"{Path(arguments.keyframes).stem}-compared")
     results = Results(out, force=arguments.force)
     with results.writing():
@@ -175,6 +179,7 @@ def _compare(arguments: argparse.Namespace) -> int:
         common |= {"name": Path(arguments.keyframes).name}
         if not body:
             return joints.command(motion, every=arguments.keep, **common)
+        common |= {"needs": needs, "told": asked.told(arguments, motion)}
         return compare.command(motion, closed=arguments.closed, every=arguments.keep, **common)
 
 

@@ -28,10 +28,17 @@ def ranked(frame: pd.DataFrame, needs: Needs) -> list[Row]:
     table = Table("compare", frame, frame)
     pool = candidates.candidates(needs)
     passing, met = pool[:2]
-    groups = (smoothing(needs), take(needs), pool, (passing, met), (candidates.measured, met))
-    best = [records(table.asked(filters, rank).rows) for filters in (*groups, (candidates.measured,))]
-    best[:2] = [rows[:1] for rows in best[:2]]
-    return list({row["scheme"]: row for rows in reversed(best) for row in reversed(rows)}.values())[::-1]
+
+    def nearest(row: Row) -> tuple[object, ...]:
+        return needs.distance(row), rank(row)
+
+    first = [
+        records(table.asked(which, rank).rows)[:1] for which in (smoothing(needs), take(needs))
+    ]
+    groups = ((pool, rank), ((passing, met), rank), ((candidates.through,), nearest))
+    others = [*groups, ((candidates.measured,), rank)]
+    rows = [*first, *(records(table.asked(*group).rows) for group in others)]
+    return list({row["scheme"]: row for group in rows for row in group}.values())
 
 
 def table(frame: pd.DataFrame, needs: Needs) -> list[str]:
@@ -101,4 +108,6 @@ def _reason(row: Row, needs: Needs) -> str:
         ("whose acceleration jumps", lambda: row["continuity"] < smooth),
         ("that turn during holds", lambda: row["hold_rotation"] > candidates.STILL),
     )
-    return next((reason for reason, applies in tests if applies()), "of more torque or a longer way")
+    return next(
+        (reason for reason, applies in tests if applies()), "of more torque or a longer way"
+    )

@@ -9,11 +9,12 @@ import numpy as np
 import pandas as pd
 
 from quatspline import quaternion
-from quatspline.findings.candidates import called, rank, smooth, usable
+from quatspline.findings.candidates import called, direct, rank, smooth, still, usable
 from quatspline.findings.findings import Finding
-from quatspline.findings.needs import significant
+from quatspline.findings.needs import Needs, significant
 from quatspline.findings.questions import Table
 from quatspline.findings.quotes import Part, Quote, multiple
+from quatspline.findings.recommendation import take
 from quatspline.instruments.excursion import HOLD
 from quatspline.instruments.trials import Row, records
 from quatspline.keyframes import Keyframes
@@ -56,7 +57,7 @@ def cautions(
     said = [
         *([] if told else _clock(keyframes)),
         *_crowded(h, pair),
-        *_gaps(h, pair),
+        *_gaps(h, steps, pair),
         *_holds(steps, pair, frame),
         *_half_turns(steps, pair),
         *_wide(steps, pair),
@@ -103,15 +104,15 @@ def _crowded(h: FloatArray, pair: Pair) -> Iterator[list[Part]]:
         ]
 
 
-def _gaps(h: FloatArray, pair: Pair) -> Iterator[list[Part]]:
+def _gaps(h: FloatArray, steps: FloatArray, pair: Pair) -> Iterator[list[Part]]:
     median = float(np.median(h))
-    wide = np.flatnonzero(h > GAP * median)
+    wide = np.flatnonzero((h > GAP * median) & (np.radians(steps) >= HOLD))  # a hold may last
     if wide.size:
         k = int(wide[h[wide].argmax()])
         yield [
             f"a gap of {significant(float(h[k]))} s between {pair(k)}, "
-            f"{significant(h[k] / median)} median spacings{_others(wide.size, 'gap')}: what a curve does there is "
-            "its own invention."
+            f"{significant(h[k] / median)} times the median spacing{_others(wide.size, 'gap')}: what a curve does "
+            "there is its own invention."
         ]
 
 
@@ -134,9 +135,9 @@ def _holds(steps: FloatArray, pair: Pair, frame: pd.DataFrame) -> Iterator[list[
 
 
 def _holding(frame: pd.DataFrame) -> list[tuple[Row, Quote]]:
-    """The scheme that the fairest curve is of, the calmest of its kind, and a known one, with what they turn."""
+    """What schemes turn during holds: the one to take if these did not count, the calmest, and a known one."""
     table = Table("compare", frame, frame)
-    usual = table.asked((usable, smooth), rank)
+    usual = table.asked((each for each in take(Needs()) if each not in (still, direct)), rank)
     calm = table.asked((usable, smooth), lambda row: (row["hold_rotation"], rank(row)))
     known = table.asked((lambda rows, _: (rows["scheme"] == KNOWN) & rows["failure"].isna(),))
     rows = [row for found in (usual, calm, known) for row in records(found.rows[:1])]
@@ -197,4 +198,6 @@ def _others(count: int, what: str) -> str:
     """How many more there are of what was named once."""
     if count == 1:
         return ""
-    return f" (the first of {count} holds)" if what == "hold" else f" ({count - 1} more {what}{'s' if count > 2 else ''})"
+    if what == "hold":
+        return f" (the first of {count} holds)"
+    return f" ({count - 1} more {what}{'s' if count > 2 else ''})"

@@ -132,15 +132,15 @@ def significant(value: float) -> str:
 
 
 def _smoothness(k: float) -> str:
-    return f"C{int(k)}" if k >= 0 else "it leaps"
+    return f"C{int(k)}" if k >= 0 else "leaps"
 
 
 def _shaped_by(count: Any) -> str:
-    return "all keyframes shape it" if count == "all" else f"{count} keyframes shape a segment"
+    return "shaped by all keyframes" if count == "all" else f"shaped by {count} keyframes"
 
 
 def _waits(count: Any) -> str:
-    return f"it waits for {'all' if count == 'all' else int(count)}"
+    return f"waits for {'all keyframes' if count == 'all' else int(count)}"
 
 
 # -- sentences ----------------------------------------------------------------------------------
@@ -167,8 +167,8 @@ def breaches(needs: Needs, rows: pd.DataFrame, name: Callable[[str], str]) -> It
 def _listed(limit: Limit, lost: list[Row], name: Callable[[str], str]) -> list[Part]:
     parts: list[Part] = []
     for row in lost[:LISTED]:
-        parts += [", " if parts else "", name(str(row["scheme"])), " (", *limit.said(row), ")"]
-    return [*parts, f" and {len(lost) - LISTED} more" if len(lost) > LISTED else ""]
+        parts += ["; " if parts else "", f"{name(str(row['scheme']))}, ", *limit.said(row)]
+    return [*parts, f"; and {len(lost) - LISTED} more" if len(lost) > LISTED else ""]
 
 
 def had(limits: Iterable[Limit], row: Row) -> list[Part]:

@@ -11,6 +11,9 @@ from quatspline.instruments.panels import around
 from quatspline.instruments.trials import Row
 from quatspline.quaternion import FloatArray
 
+EXACT = 1e-9
+"""Degrees below which nothing but rounding is left."""
+
 GRID, CANDIDATES = 9, 8
 """Samples a segment, its ends included, and the fastest segments that are then looked into."""
 FINER, ZOOMS = 5, 7
@@ -28,10 +31,14 @@ def extent(curve: Curve) -> Row:
     found = excursion(curve)
     off, hold = np.degrees(found.off), found.hold
     return {
-        "excursion": float(off[~hold].max(initial=0.0)),
-        "hold_rotation": float(off[hold].max()) if hold.any() else np.nan,
+        "excursion": _above_rounding(off[~hold].max(initial=0.0)),
+        "hold_rotation": _above_rounding(off[hold].max()) if hold.any() else np.nan,
         "peak_rate": float(np.degrees(peak_rate(curve))),
     }
+
+
+def _above_rounding(angle: float) -> float:
+    return float(angle) if angle > EXACT else 0.0
 
 
 def peak_rate(curve: Curve) -> float:
