@@ -215,7 +215,10 @@ def test_a_curve_that_turns_round_and_round_is_said_to() -> None:
     keyframes = [[1, 0, 0, 0], [1, 0, 0, 0], [0.8, 0.6, 0, 0], [0.8, 0.6, 0, 0]]
     table = qs.compare([0, 10, 10.02, 20], keyframes, ["quartic"])
     lines = advice(table)
-    assert lines[1:] == ["It turns 272 rad where the keyframes need 1.29."]
+    assert lines[1:] == [
+        "It turns 272 rad where the keyframes need 1.29.",
+        "While the keyframes stand still, it turns up to 358 degrees away; no candidate stands still.",
+    ]
 
 
 def test_of_attitudes_with_dwells_between_the_curve_that_wanders_least_is_taken() -> None:

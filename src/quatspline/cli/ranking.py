@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 ROWS = 5
+SMALL = 1e-3
+"""What is less is not told apart."""
 
 Show = Callable[[Row], str]
 
@@ -67,7 +69,7 @@ def _columns(frame: pd.DataFrame, second: float) -> list[tuple[str, Show]]:
     return [
         ("scheme", lambda row: called(row["scheme"])),
         ("C^k", lambda row: f"C{row['continuity']:.0f}" if row["continuity"] >= 0 else "leaps"),
-        ("torque", lambda row: number(row["torque_over_least"])),
+        ("torque/least", lambda row: number(row["torque_over_least"])),
         ("excursion deg", lambda row: number(row["excursion"])),
         *(holds if frame["hold_rotation"].notna().any() else []),
         ("peak deg/s", lambda row: number(row["peak_rate"] * second)),
@@ -80,7 +82,7 @@ def _columns(frame: pd.DataFrame, second: float) -> list[tuple[str, Show]]:
 def _number(value: float) -> str:
     if not np.isfinite(value):
         return "-" if np.isnan(value) else "inf"
-    return significant(value) if value >= 1e-3 else "0"
+    return significant(value) if value >= SMALL or not value else f"<{SMALL:g}"
 
 
 # -- the others -----------------------------------------------------------------------------------
@@ -108,6 +110,4 @@ def _reason(row: Row, needs: Needs) -> str:
         ("whose acceleration jumps", lambda: row["continuity"] < smooth),
         ("that turn during holds", lambda: row["hold_rotation"] > candidates.STILL),
     )
-    return next(
-        (reason for reason, applies in tests if applies()), "of more torque or a longer way"
-    )
+    return next((reason for reason, applies in tests if applies()), "ranked lower")

@@ -30,6 +30,8 @@ KNOWN = "slerp"
 
 WIDE, AMBIGUOUS = 120.0, 1.0
 """Degrees from which on a step is wide, and those within which it is half a turn."""
+ROUNDING = 1e-6
+"""Degrees within which half a turn is exactly that."""
 CROWDED = 0.01
 """A spacing below this share of the median: two keyframes at almost the same time."""
 REPEATED, ENOUGH = 0.2, 20
@@ -158,10 +160,14 @@ def _half_turns(steps: FloatArray, pair: Pair) -> Iterator[list[Part]]:
     half = np.flatnonzero(steps > 180.0 - AMBIGUOUS)
     if half.size:
         k = int(half[steps[half].argmax()])
+        left = 180.0 - float(steps[k])
+        told = "exactly half a turn, so that rounding decides which way round it goes"
+        if left > ROUNDING:
+            more = significant(left)
+            told = f"{steps[k]:.4g} degrees: {more} degrees more, and it goes the other way round"
         yield [
-            f"the step between {pair(k)} is {steps[k]:.4g} degrees, half a turn to within "
-            f"{AMBIGUOUS:g}{_others(half.size, 'such step')}: which way round it goes is decided by rounding, unless "
-            "a keyframe between them says so."
+            f"the step between {pair(k)} is {told}{_others(half.size, 'such step')}. A keyframe between them would "
+            "settle which way is meant."
         ]
 
 

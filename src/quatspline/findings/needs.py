@@ -140,7 +140,9 @@ def _shaped_by(count: Any) -> str:
 
 
 def _waits(count: Any) -> str:
-    return f"waits for {'all keyframes' if count == 'all' else int(count)}"
+    if count == "all":
+        return "waits for all keyframes"
+    return f"waits for {int(count)} keyframe{'' if int(count) == 1 else 's'}"
 
 
 # -- sentences ----------------------------------------------------------------------------------

@@ -22,6 +22,10 @@ def _misses(table: Table) -> tuple[Part, ...]:
     return (table.quote("misses", ".0e" if table.best["misses"] else ".0f"),)
 
 
+def _degrees(table: Table) -> tuple[Part, ...]:
+    return (Quote((table.cell("misses"),), "rounded degrees", ".3g"), " degrees")
+
+
 def _has_torque(table: Table) -> tuple[Part, ...]:
     """How much, where there is another to say it beside."""
     at_rest = table.taken["torque"] == 0.0 and alike(table.frame, table.taken).sum() > 1
@@ -31,13 +35,19 @@ def _has_torque(table: Table) -> tuple[Part, ...]:
 
 def _over_least(energy: str, thing: str, table: Table) -> tuple[Part, ...]:
     """How much of an energy a scheme needs, as an object of "has"."""
-    column, least = f"{energy}_over_least", f"the least {thing} of all measured"
+    column, least = f"{energy}_over_least", f"the least {thing} of all {_all(table)}"
     over = table.best[column]
     if np.isinf(over):
         return (f"a {thing} where another needs none",)
     if over - 1.0 > EQUAL:
         return table.quote(column, ROUNDED), f" times {least}"
     return (least if over == 1.0 else f"{least} to three digits",)
+
+
+def _all(table: Table) -> str:
+    """Whose least it is: of curves that pass near keyframes only, none."""
+    misses = table.frame.loc[table.frame["failure"].isna(), "misses"]
+    return "measured" if (misses <= MET).all() else "that pass through the keyframes"
 
 
 def _reach(row: Row) -> str:
@@ -92,6 +102,7 @@ PHRASES: dict[str, Words] = {
     "best": lambda table: (called(table.best["scheme"]),),
     "taken": lambda table: (called(table.taken["scheme"]),),
     "misses by": _misses,
+    "near": _degrees,
     "has torque": _has_torque,
     "reach": lambda table: (_reach(table.best),),
     "count": _count,

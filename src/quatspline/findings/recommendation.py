@@ -135,7 +135,7 @@ THROUGH = (
 )
 NEAR = (
     "Take {best}: the keyframes have about {noise:rounded} degrees of noise about each axis, which a curve through "
-    "them repeats. It is C{continuity:.0f} as measured here, passes within {misses:rounded} rad of each keyframe, "
+    "them repeats. It is C{continuity:.0f} as measured here, passes within {near} of each keyframe, "
     "and {reach}."
 )
 

@@ -24,14 +24,14 @@ FINER, ZOOMS = 5, 7
 def extent(curve: Curve) -> Row:
     """Columns of a single-track curve, all in degrees; less is better.
 
-    excursion: the largest distance to the arc between neighbouring keyframes, of segments that move;
-    hold_rotation: the largest angle from the keyframe while two equal ones follow each other, NaN where
-    none do; peak_rate: the largest |omega| (degrees/t).
+    excursion: the largest distance to the arc between neighbouring keyframes, which where they are equal
+    is that keyframe; hold_rotation: the same of such holds alone, NaN where there are none; peak_rate:
+    the largest |omega| (degrees/t).
     """
     found = excursion(curve)
     off, hold = np.degrees(found.off), found.hold
     return {
-        "excursion": _above_rounding(off[~hold].max(initial=0.0)),
+        "excursion": _above_rounding(off.max()),
         "hold_rotation": _above_rounding(off[hold].max()) if hold.any() else np.nan,
         "peak_rate": float(np.degrees(peak_rate(curve))),
     }
