@@ -60,6 +60,7 @@ class MinimumTorqueSpline(SegmentCurve):
     closable = False
     iterative = True
     practical_keyframes = 200
+    rough = {"subintervals": 1}
     family = ROTATION_VECTOR
     operations = Operations(exps=Per(sample=1))
 

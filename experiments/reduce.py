@@ -16,7 +16,7 @@ from quatspline.instruments.summary import ALL, compared
 from quatspline.instruments.trials import Row, attempted
 from quatspline.motion import Motion
 from quatspline.runs.experiment import Run, crossed
-from quatspline.trajectories.clips import OWN, clip, names
+from quatspline.trajectories.clips import OWN, clip, middle, names
 
 TITLE = "Keyframes that recorded motion needs"
 PAPER = False
@@ -30,8 +30,8 @@ NOTE = (
     "keyframes: of all joints that did not fail; share: of their frames; per_second: keyframes of a joint a second; "
     "over_slerp: a joint's keyframes over slerp's, geometric mean over the compared joints, on which all schemes ran; "
     "most_over_slerp: the largest; lower is better. Greedy: fewer may do. Only schemes of this package are tried that "
-    f"are cheap to set up, unless others are asked for. Without recorded clips there is '{OWN}' alone, which the "
-    "project's generator made."
+    "are cheap to set up, at quick size those of the figure, unless others are asked for. Without recorded clips "
+    f"there is '{OWN}' alone, which the project's generator made."
 )
 FORMATS = {
     "share": ".3f",
@@ -55,7 +55,9 @@ def cells(run: Run) -> list[dict[str, Any]]:
 
 
 def _concerned(run: Run) -> list[str]:
-    """Schemes that are cheap to set up hundreds of times a joint."""
+    """Schemes that are cheap to set up hundreds of times a joint; at quick size those that are shown."""
+    if run.quick and not run.schemes:
+        return list(SHOWN)
     known = {name: catalogue.scheme(name) for name in catalogue.schemes()}
     cheap = [n for n, c in known.items() if c.peer is None and c.practical_keyframes is None]
     return run.schemes or cheap
@@ -74,8 +76,7 @@ def _measured(run: Run, clip: str, filter: str, error_degrees: float, scheme: st
 @cache
 def _tracks(name: str, filter: str, frames: int) -> Motion:
     tracks = truth(clip(name), CUTOFFS[filter]).tracks
-    first = max(0, (len(tracks.times) - frames) // 2)
-    return tracks.frames(slice(first, first + frames))
+    return middle(tracks, frames)
 
 
 def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
@@ -126,11 +127,15 @@ def _lines(ax: Any, rows: pd.DataFrame, column: str = "share") -> None:
             ax.plot(own.index, own, label=name, **style.scheme_style(name))
 
 
+def _count(clips: list[str]) -> str:
+    return f"{len(clips)} clip{'' if len(clips) == 1 else 's'}"
+
+
 def caption(table: pd.DataFrame) -> str:
     clips = sorted(set(table["clip"]) - {ALL})
     made = " No recorded clip was given: this is the project's own walk." if clips == [OWN] else ""
     return (
         "Keyframes that greedy reduction keeps of recorded motion against the error that is allowed at every frame, "
-        f"joint by joint ({len(clips)} clips): their share of all frames, and their number over that of slerp, "
+        f"joint by joint ({_count(clips)}): their share of all frames, and their number over that of slerp, "
         f"geometric mean over joints. Recordings as they are, and low-pass filtered.{made}"
     )

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,7 +25,7 @@ from quatspline.instruments.rescue import solved
 from quatspline.instruments.told_noise import told_noise
 from quatspline.instruments.trials import Row, attempted, facts
 from quatspline.keyframes import Keyframes
-from quatspline.options import among
+from quatspline.options import among, declared_by, nearest
 from quatspline.runs.experiment import Run
 from quatspline.solving import ConvergenceError
 from quatspline.timing.own_keyframes import left_out, seconds_of
@@ -69,6 +70,7 @@ def compare(
     schemes: Sequence[str] | None = None,
     *,
     closed: bool = False,
+    **options: Any,
 ) -> pd.DataFrame:
     """Measure schemes on keyframes: one row a scheme, what does not apply or fails with its reason.
 
@@ -77,6 +79,7 @@ def compare(
     times, quaternions, closed : a single track, as `quatspline.build` takes it
     schemes : names, by default all; of those, libraries' schemes that would take long on so many
         keyframes are left out with a reason, the same ones in every run
+    **options : of those of the schemes that have them
 
     Returns
     -------
@@ -92,7 +95,7 @@ def compare(
     Raises
     ------
     ValueError
-        On bad keyframes, an unknown scheme, or several tracks.
+        On bad keyframes, an unknown scheme, an option that none has, or several tracks.
 
     Examples
     --------
@@ -103,7 +106,7 @@ def compare(
     {'quartic': 2, 'slerp': 0}
     """
     with always_compiled():
-        return compared(prepared(times, quaternions, closed), schemes)[0]
+        return compared(prepared(times, quaternions, closed), schemes, options)[0]
 
 
 def prepared(times: ArrayLike | None, quaternions: ArrayLike, closed: bool) -> Keyframes:
@@ -113,7 +116,9 @@ def prepared(times: ArrayLike | None, quaternions: ArrayLike, closed: bool) -> K
 
 
 def compared(
-    keyframes: Keyframes, named: Sequence[str] | None
+    keyframes: Keyframes,
+    named: Sequence[str] | None,
+    options: Mapping[str, Any] = MappingProxyType({}),
 ) -> tuple[pd.DataFrame, dict[str, Curve]]:
     """The table, and the curves that were measured."""
     import pandas as pd
@@ -123,11 +128,12 @@ def compared(
     names = list(dict.fromkeys(schemes() if named is None else (scheme(n).name for n in named)))
     if not names:
         raise ValueError("schemes is empty: name at least one")
+    check_options(options, names)
     rows: list[Row] = []
     curves: dict[str, Curve] = {}
     for name in Run(quick=True).progress(names, label="compare"):
         reason = left_out(name, keyframes.count) if named is None else None
-        measure = partial(_row, name, keyframes, curves)
+        measure = partial(_row, name, keyframes, curves, options)
         row = attempted(measure)[0] if reason is None else {"failure": reason}
         rows.append({"scheme": name} | row)
     table = pd.DataFrame(rows).reindex(columns=COLUMNS)
@@ -164,10 +170,28 @@ COLUMNS = [
 ]
 
 
-def _row(name: str, keyframes: Keyframes, curves: dict[str, Curve]) -> list[Row]:
+def check_options(options: Mapping[str, Any], names: Sequence[str]) -> None:
+    """Refuse an option that none of the schemes has."""
+    known = {option for name in names for option in declared_by(scheme(name))}
+    for option in options:
+        if option not in known:
+            raise ValueError(
+                f"none of the schemes has an option {option!r}: {nearest(option, known)}"
+            )
+
+
+def told(options: Mapping[str, Any]) -> str:
+    """A note's sentence on the options of a comparison."""
+    listed = ", ".join(f"{name}={value}" for name, value in options.items())
+    return f" Options, of the schemes that have them: {listed}." if listed else ""
+
+
+def _row(
+    name: str, keyframes: Keyframes, curves: dict[str, Curve], options: Mapping[str, Any]
+) -> list[Row]:
     """The row of one scheme; its curve is kept for timings and figures."""
     cls = scheme(name)
-    given = among(cls, {"tolerance": TOLERANCE})
+    given = among(cls, {"tolerance": TOLERANCE} | dict(options))
     try:
         curve, note = solved(cls, keyframes, **given)
     except ConvergenceError as error:  # in words for a table

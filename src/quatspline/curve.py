@@ -21,6 +21,7 @@ from quatspline.inputs.arrays import (
     FloatArray,
     check_out,
     checked_threads,
+    switch,
 )
 from quatspline.inputs.domain import Domain
 from quatspline.log_curve import log_curve
@@ -59,6 +60,7 @@ class Curve(abc.ABC):
     closed : whether the curve returns to its first keyframe
     align : put neighbours on one hemisphere (the short way round); False keeps the signs as given
     closing_sign : with closed and align=False, -1 closes an odd number of full turns
+    hold : outside the domain of an open curve, the first or last pose at rest; False refuses such times
     normalise : take quaternions of any length, such as rounded ones; False refuses those whose norm
         is off 1 by more than 1e-3
     **options : the scheme's own
@@ -115,6 +117,8 @@ class Curve(abc.ABC):
     """Conformance checks that a scheme does not pass, a peer run as published as a rule, each with its reason."""
     rescue: ClassVar[dict[str, Any]] = {}
     """Options that find the curve where the published iteration, the default, does not converge."""
+    rough: ClassVar[dict[str, Any]] = {}
+    """Options of nearly the same curve for less time, where very many are tried, as in a reduction."""
     batched: ClassVar[bool] = False
     """Whether `_fit` and the evaluation take all tracks at once."""
 
@@ -136,6 +140,7 @@ class Curve(abc.ABC):
         closed: bool = False,
         align: bool = True,
         closing_sign: int | None = None,
+        hold: bool = False,
         normalise: bool = False,
         **given: Any,
     ) -> None:
@@ -148,13 +153,13 @@ class Curve(abc.ABC):
             normalise=normalise,
             min_keyframes=self.min_keyframes,
         )
-        self._build(keyframes, given)
+        self._build(keyframes, given, hold)
 
     @classmethod
-    def from_keyframes(cls, keyframes: kf.Keyframes, **given: Any) -> Self:
+    def from_keyframes(cls, keyframes: kf.Keyframes, *, hold: bool = False, **given: Any) -> Self:
         """The curve of prepared keyframes: what the constructor does after validation."""
         curve = cls.__new__(cls)
-        curve._build(keyframes, given)
+        curve._build(keyframes, given, hold)
         return curve
 
     # -- what a scheme writes -------------------------------------------------------------------
@@ -212,6 +217,14 @@ class Curve(abc.ABC):
         return dict(self._options)
 
     @property
+    def engine(self) -> Literal["python", "compiled"] | None:
+        """What evaluates its orientations, where the scheme is written in kernels: "python" or "compiled".
+
+        None where it is not, but has code of its own, in numpy or a library's.
+        """
+        return None
+
+    @property
     def numeric_orders(self) -> tuple[int, ...]:
         """Orders whose values come from the shared numerical fallback."""
         cls = type(self)
@@ -235,7 +248,8 @@ class Curve(abc.ABC):
 
         Parameters
         ----------
-        t : scalar or array S; an open curve refuses times outside its domain, a closed one wraps
+        t : scalar or array S; an open curve refuses times outside its domain unless it holds, a
+            closed one wraps
         order : 0 for unit quaternions S + (*K, 4); 1 for the angular velocity S + (*K, 3) in rad per
             time; 2 for the angular acceleration
         out : float64 of exactly that shape, any strides; is filled and returned
@@ -257,6 +271,9 @@ class Curve(abc.ABC):
         (1, 3, 4)
         """
         samples, slack = self._domain.take(t)
+        outside = None
+        if self._domain.hold:
+            samples, outside = self._domain.held(samples, slack)
         if type(order) is not int or order not in self.orders:
             order = self._checked_order(order)
         if not (isinstance(frame, str) and frame in ("body", "world")):
@@ -272,6 +289,8 @@ class Curve(abc.ABC):
         bad = self._evaluate(flat, origin, slack, order, result.reshape(-1), threads)
         if bad >= 0:
             self._domain.refuse(t, bad)
+        if order and outside is not None:
+            result[outside] = 0.0  # at rest
         if order and frame == "world":
             turn = np.empty(samples.shape + self._widths[0])
             self._evaluate(flat, origin, slack, 0, turn.reshape(-1), threads)
@@ -294,7 +313,9 @@ class Curve(abc.ABC):
         >>> spin.log(1).round(6)  # half the rotation vector
         array([0.      , 0.      , 1.570796])
         """
-        samples, _ = self._domain.take(t)
+        samples, slack = self._domain.take(t)
+        if self._domain.hold:
+            samples, _ = self._domain.held(samples, slack)
         return log_curve(self.inner, self._keyframes, samples - self._domain.origin, self(t))
 
     def rotation(self, t: ArrayLike) -> Rotation:
@@ -320,14 +341,14 @@ class Curve(abc.ABC):
 
     def __getstate__(self) -> Any:
         # What it was made of: fitted constants hold addresses, which are those of this process.
-        return self._keyframes, self._options
+        return self._keyframes, self._options, self._domain.hold
 
     def __setstate__(self, state: Any) -> None:
         self._build(*state)
 
     # -- how it works ---------------------------------------------------------------------------
 
-    def _build(self, keyframes: kf.Keyframes, given: dict[str, Any]) -> None:
+    def _build(self, keyframes: kf.Keyframes, given: dict[str, Any], hold: bool = False) -> None:
         if keyframes.count < self.min_keyframes:
             raise ValueError(
                 f"quaternions has {keyframes.count} keyframes: {self.name} needs {self.min_keyframes}"
@@ -342,7 +363,8 @@ class Curve(abc.ABC):
             )
         self._options = options.checked(type(self), given)
         self._keyframes = keyframes
-        self._domain = Domain(keyframes.times, float(keyframes.knots[-1]), keyframes.closed)
+        period = float(keyframes.knots[-1])
+        self._domain = Domain(keyframes.times, period, keyframes.closed, switch("hold", hold))
         self._widths = tuple((*keyframes.track_shape, width) for width in (4, 3, 3))
         if self.batched or keyframes.tracks.shape[0] == 1:
             # No part is the curve itself: a cycle would keep its memory until garbage collection.
@@ -387,6 +409,8 @@ class Curve(abc.ABC):
     def since(self, t: Any) -> FloatArray:
         """Times since the first keyframe (m,), within the domain, of samples of any kind and shape."""
         samples, slack = self._domain.take(t)
+        if self._domain.hold:
+            samples, _ = self._domain.held(samples, slack)
         inner, _, bad = self._domain.wrap(samples.reshape(-1) - self._domain.origin, slack)
         if bad.any():
             self._domain.refuse(t, int(np.argmax(bad)))
@@ -400,6 +424,13 @@ class Curve(abc.ABC):
         out = np.empty((t.size, self._keyframes.tracks.shape[0], 3 if order else 4))
         self._evaluate(np.array(t, dtype=float), 0.0, np.inf, order, out.reshape(-1), 1)
         return out
+
+    def orientations(self, t: FloatArray) -> FloatArray:
+        """Orientations (m, 4) of a single track at times since the first keyframe (m,).
+
+        Within the domain, neither checked nor wrapped: for instruments, which ask often and near one another.
+        """
+        return self._orientation(t)
 
     def _checked_order(self, order: Any) -> int:
         try:

@@ -38,6 +38,7 @@ class Keyframes:
     times : (n,) or, closed, (n + 1,), as given (`stamps.stamps`); the last of a closed set is the return
     knots : float64 times since the first, (n,) or (n + 1,): all work is done in these
     spacings : float64 knot spacings h, one a segment: (n - 1,) or, closed, (n,)
+    flips : (K, n) float64, -1 where alignment turned a keyframe's sign round, otherwise 1
     digits : dtype of the times as they were given
     tracks : (K, n, 4) float64, unit quaternions, neighbours on one hemisphere unless kept as given
     track_shape : the shape whose product is K; () for a single track
@@ -52,6 +53,7 @@ class Keyframes:
     track_shape: tuple[int, ...]
     closed: bool
     signs: FloatArray
+    flips: FloatArray
     digits: np.dtype[Any] = FLOAT
 
     @property
@@ -123,7 +125,8 @@ class Keyframes:
     def track(self, k: int) -> Keyframes:
         """The keyframes of one track."""
         own = slice(k, k + 1)
-        return replace(self, tracks=self.tracks[own], track_shape=(), signs=self.signs[own])
+        tracks, signs, flips = self.tracks[own], self.signs[own], self.flips[own]
+        return replace(self, tracks=tracks, track_shape=(), signs=signs, flips=flips)
 
     def shaped(self) -> FloatArray:
         """The keyframes in the caller's shape (n, *track_shape, 4)."""
@@ -180,20 +183,22 @@ def prepare(
     track_shape = q.shape[1:-1]
     rows = q.reshape(n, -1, 4)
     tracks, signs = np.empty((rows.shape[1], n, 4)), np.empty(rows.shape[1])
+    flips = np.empty(tracks.shape[:2])
+    filled = tracks, signs, flips
     if not engine.run(
-        _take, rows.size // 4, rows, align, closed, float(closing_sign or 1), tracks, signs
+        _take, rows.size // 4, rows, align, closed, float(closing_sign or 1), *filled
     ):
         explain_norms(q, NORM_TOLERANCE)
-    keyframes = Keyframes(t, knots, spacings, tracks, track_shape, closed, signs, digits)
+    keyframes = Keyframes(t, knots, spacings, tracks, track_shape, closed, signs, flips, digits)
     if not align:
         _refuse_antipodes(keyframes)
-    for array in (t, knots, spacings, tracks, signs):
+    for array in (t, knots, spacings, *filled):
         array.setflags(write=False)
     return keyframes
 
 
 @compiled
-def _take(q, align, closed, closing_sign, tracks, signs):
+def _take(q, align, closed, closing_sign, tracks, signs, flips):
     """Normalise (n, K, 4) into tracks (K, n, 4), aligned, and close them; False if one is no unit."""
     for k in range(tracks.shape[0]):
         sign = 1.0
@@ -212,6 +217,7 @@ def _take(q, align, closed, closing_sign, tracks, signs):
             tracks[k, i, 1] = sign * x
             tracks[k, i, 2] = sign * y
             tracks[k, i, 3] = sign * z
+            flips[k, i] = sign
         signs[k] = closing_sign
         if closed and align:
             a, b = tracks[k, 0], tracks[k, tracks.shape[1] - 1]

@@ -79,12 +79,15 @@ class Within(Bound):
 LONG = 60
 """Characters of a refused value that are shown."""
 
+EXACT = 2**53
+"""Integers up to it are float64 numbers."""
+
 LARGEST = 1e6
 """Of factors of a turn: beyond, angles have no digits left that one could mean."""
 
 Factor = Annotated[float, Within(LARGEST)]
 Positive = Annotated[float, Above(0.0)]
-Count = Annotated[int, AtLeast(1), AtMost(2**53)]  # all of them float64 numbers
+Count = Annotated[int, AtLeast(1), AtMost(EXACT)]
 Stop = Literal["residual", "change"]
 OnFailure = Literal["raise", "return"]
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import stat
+import sys
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -13,6 +14,7 @@ import numba
 import pytest
 
 from quatspline.engines import compiler, disk
+from quatspline.system.loading import load
 
 
 def twice(x):
@@ -73,6 +75,21 @@ def test_damage_is_compiled_over(
         warnings.simplefilter("ignore")  # of a folder in its place, which cannot be replaced
         loads(folder)
     assert loads(folder) or path.is_dir()
+
+
+def test_code_of_equal_files_in_two_places_is_kept_apart(tmp_path: Path) -> None:
+    """It names its module, and of a file loaded by path the name is that place's: elsewhere there is none."""
+    source = "def thrice(x):\n    return 3.0 * x\n"
+    for place in ("a", "b"):
+        (tmp_path / place).mkdir()
+        path = tmp_path / place / "plugin.py"
+        path.write_text(source)
+        module = load(path, "baseline")
+        function: Any = numba.njit(module.thrice)
+        disk.keep(function, module.thrice, tmp_path / "code")
+        assert function(1.0) == 3.0
+        assert not function.stats.cache_hits
+        del sys.modules[module.__name__]  # as in a process that has the other one
 
 
 class _Trap:

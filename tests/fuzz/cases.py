@@ -32,6 +32,8 @@ NUMBERS: dict[str, Callable[[Rng, int], Any]] = {
     "bias": lambda rng, n: float(rng.uniform(-2.0, 2.0)),
     "start_velocity": lambda rng, n: rng.normal(size=3),
     "end_velocity": lambda rng, n: rng.normal(size=3),
+    "start_acceleration": lambda rng, n: rng.normal(size=3),
+    "end_acceleration": lambda rng, n: rng.normal(size=3),
     "max_iterations": lambda rng, n: int(rng.integers(1, 500)),
     "tolerance": lambda rng, n: float(10.0 ** rng.uniform(-10, -4)),
 }
@@ -176,8 +178,9 @@ def _options(rng: Rng, cls: type[qs.Curve], n: int, closed: bool) -> dict[str, A
         kind = parameter.annotation
         if name == "on_failure" or rng.random() < 0.5:
             continue
-        if get_origin(kind) is Literal:
-            options[name] = get_args(kind)[rng.integers(len(get_args(kind)))]
+        words = next((k for k in (kind, *get_args(kind)) if get_origin(k) is Literal), None)
+        if words is not None:
+            options[name] = get_args(words)[rng.integers(len(get_args(words)))]
         elif name in NUMBERS:
             options[name] = NUMBERS[name](rng, n)
     return _consistent(options, n, closed)
@@ -187,8 +190,14 @@ def _consistent(options: dict[str, Any], n: int, closed: bool) -> dict[str, Any]
     """Without what a scheme refuses together."""
     if closed and options.get("ends") in ("clamped", "stationary"):
         del options["ends"]
-    if options.get("ends") != "clamped":
-        options = {k: v for k, v in options.items() if not k.endswith("_velocity")}
+    if closed or options.get("ends") not in ("clamped", "complete"):
+        options = {
+            k: v for k, v in options.items() if not k.endswith(("_velocity", "_acceleration"))
+        }
+    if options.get("degree", 3) == 3:
+        options = {k: v for k, v in options.items() if not k.endswith("_acceleration")}
     if options.get("degree", 3) > 3 or options.get("ends") == "not-a-knot":
-        options = {k: v for k, v in options.items() if n > 6 or k not in ("degree", "ends")}
+        options = {k: v for k, v in options.items() if n > 9 or k not in ("degree", "ends")}
+        if "ends" not in options:
+            options = {k: v for k, v in options.items() if not k.startswith(("start_", "end_"))}
     return options

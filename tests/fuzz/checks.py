@@ -23,6 +23,7 @@ REFUSALS = (
     r"too uneven for degree",
     r"rad on a segment of",
     r"float64 does not tell so many within",
+    r"the march brings rates there",
 )
 """What may be refused of keyframes that were drawn at random: sentences that say why."""
 

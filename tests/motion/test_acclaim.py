@@ -111,6 +111,11 @@ def test_a_skeleton_that_is_not_found_is_told(tmp_path: Path) -> None:
     assert qs.read_motion(path, skeleton=other).tracks == ["root", "hip", "lhumerus"]
 
 
+def test_a_skeleton_alone_is_no_motion(tmp_path: Path) -> None:
+    told = refusal(put(tmp_path / "made.asf", ASF))
+    assert told == ": a skeleton without motion: name the .amc that moves it"
+
+
 def test_a_place_of_the_root_is_told(clip: Path) -> None:
     put(clip.with_name("made.asf"), ASF.replace("position 0 0 0", "position 1 0 0"))
     with pytest.warns(MotionFileWarning, match="added to the root's path"):

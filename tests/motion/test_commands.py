@@ -131,9 +131,10 @@ def test_info_is_one_screen(walk: Path, capsys: pytest.CaptureFixture[str]) -> N
     found = dict(line.split(maxsplit=1) for line in lines if not line.startswith("largest"))
     assert found["tracks"].startswith("5, a skeleton: joint 0, joint 1")
     assert found["frames"] == "64"
-    assert found["rate"].startswith("60 Hz")
+    assert found["rate"] == "60 Hz (even)"
+    assert found["start"] == "0.0 s"
     assert found["gaps"] == "none"
-    assert "of 1 tracks changing" in found["positions"]
+    assert found["positions"] == "in the file's unit, 1 of 5 changing"
 
 
 def test_info_tells_what_is_refused_and_goes_on(

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from clips import angles, figure, put
+from scipy.interpolate import BSpline, make_interp_spline
+from scipy.spatial.transform import Rotation
 
 import quatspline as qs
 from quatspline import quaternion
@@ -51,7 +55,8 @@ def test_what_stays_stays_exactly() -> None:
         ("min-torque", "cubic"),
         ("nielson", "cubic"),
         ("log-cubic", "cubic"),
-        ("moving-frame", "cubic"),
+        ("normalised-cubic", "cubic"),
+        ("gltf-cubic", "catmull-rom"),
         ("spherical-average", "cubic"),
         ("local-quintic", "local-quintic"),
         ("quintic", "local-quintic"),
@@ -60,6 +65,147 @@ def test_what_stays_stays_exactly() -> None:
 )
 def test_positions_match_the_scheme(chosen: str, name: str) -> None:
     assert families.family("matched", qs.scheme(chosen)) is families.FAMILIES[name]
+
+
+@pytest.mark.parametrize(
+    ("chosen", "options", "degree", "ends"),
+    [
+        ("moving-frame", {}, 3, "natural"),
+        ("moving-frame", {"degree": 7, "ends": "not-a-knot"}, 7, "not-a-knot"),
+        ("moving-frame", {"degree": 5, "end_velocity": [0.0, 0.0, 0.0]}, 5, "complete"),
+        ("log-cubic", {"ends": "not-a-knot"}, 3, "not-a-knot"),
+        ("kim", {"ends": "clamped"}, 3, "complete"),
+        ("nielson", {"ends": "stationary"}, 3, "stationary"),
+    ],
+)
+def test_positions_take_degree_and_ends(
+    chosen: str, options: dict[str, Any], degree: int, ends: str
+) -> None:
+    wanted = families.SplineFamily(degree, ends)
+    assert families.family("matched", qs.scheme(chosen), options) == wanted
+
+
+CONDITIONS: dict[str, dict[str, Any]] = {
+    "natural": {"k": 3, "bc_type": "natural"},
+    "not-a-knot": {"k": 3},
+    "stationary": {"k": 3, "bc_type": "clamped"},
+}
+
+
+@pytest.mark.parametrize("ends", CONDITIONS)
+def test_spline_positions_are_scipys(ends: str) -> None:
+    rng = np.random.default_rng(0)
+    knots = 1e3 + np.cumsum(rng.uniform(0.5, 1.5, 9)) * 1e-3
+    x = rng.normal(size=(9, 3))
+    expected = make_interp_spline(knots - 1e3, x, **CONDITIONS[ends])
+    t = np.linspace(knots[0], knots[-1], 50)
+    found = families.SplineFamily(3, ends)(knots, x, False)(t)
+    np.testing.assert_allclose(found, expected(t - 1e3), atol=1e-8)
+
+
+@pytest.mark.parametrize("degree", [3, 5, 7, 9])
+@pytest.mark.parametrize("ends", ["not-a-knot", "complete"])
+def test_spline_positions_keep_polynomials_of_their_degree(degree: int, ends: str) -> None:
+    """Ends included: derivatives from k + 1 positions are exact."""
+    rng = np.random.default_rng(0)
+    knots = np.cumsum(rng.uniform(0.5, 1.5, 12))
+    c = rng.normal(size=(degree + 1, 3)) / 5.0 ** np.arange(degree + 1)[:, None]
+    polynomial = np.polynomial.polynomial.polyval
+    t = np.linspace(knots[0], knots[-1], 50)
+    found = families.SplineFamily(degree, ends)(knots, polynomial(knots - 6, c).T, False)(t)
+    np.testing.assert_allclose(found, polynomial(t - 6, c).T, atol=1e-9)
+
+
+@pytest.mark.parametrize("degree", [3, 9])
+@pytest.mark.parametrize("ends", ["natural", "not-a-knot", "complete", "stationary"])
+@pytest.mark.parametrize("count", [2, 3, 4, 12])
+def test_spline_positions_of_few_keyframes(degree: int, ends: str, count: int) -> None:
+    """A closed motion whose positions drift may have fewer than its degree asks for."""
+    rng = np.random.default_rng(1)
+    knots, x = np.cumsum(rng.uniform(0.5, 1.5, count)), rng.normal(size=(count, 3))
+    places = families.SplineFamily(degree, ends)(knots, x, False)
+    np.testing.assert_allclose(places(knots), x, atol=1e-9)
+    x[-1] = x[0]
+    closed = families.SplineFamily(degree, ends).fitted(knots, x, True)
+    np.testing.assert_allclose(closed(knots - knots[0]), x, atol=1e-9)
+    seam = closed([0.0, knots[-1] - knots[0] - 1e-12], 1)
+    np.testing.assert_allclose(seam[0], seam[1], atol=1e-6)
+
+
+# -- the rigid motion of moving frames --------------------------------------------------------------
+
+
+def rigid(closed: bool) -> qs.Motion:
+    """A body whose frame and origin move; closed, with the return."""
+    rng = np.random.default_rng(4)
+    times = np.cumsum(rng.uniform(0.05, 0.15, 12 + closed))
+    angle = 2.0 * np.pi * (times - times[0]) / (times[-1] - times[0])
+    half = np.stack([0.3 * np.sin(angle), 0.4 * np.cos(angle), 0.2 * np.sin(2 * angle)], axis=1)
+    x = np.stack([np.cos(angle), np.sin(angle), 0.3 * np.sin(2 * angle)], axis=1)
+    x[-1] = x[0] if closed else x[-1]
+    return qs.Motion(times, quaternion.exp(half[: len(half) - closed]), x)
+
+
+RIGID = [
+    ({}, False),
+    ({"degree": 5, "ends": "not-a-knot"}, False),
+    ({"degree": 7, "ends": "complete"}, False),
+    ({"degree": 5}, True),
+]
+
+
+@pytest.mark.parametrize(("options", "closed"), RIGID)
+def test_frame_and_origin_are_splines_on_one_knot_vector(
+    options: dict[str, Any], closed: bool
+) -> None:
+    """D, e_x, e_y, e_z of seed and paper: scipy's B-splines, of which the curve is made."""
+    motion = rigid(closed)
+    curve = motion.curve("moving-frame", closed=closed, **options)
+    axes, origin = curve.orientation.axes, curve.origin
+    for axis in axes:
+        assert isinstance(axis, BSpline)
+        assert (axis.k, axis.c.shape[1:]) == (options.get("degree", 3), (1, 3))
+        assert np.array_equal(axis.t, origin.t)
+    assert (origin.k, origin.c.shape) == (axes.e_x.k, axes.e_x.c.shape)
+    s = np.linspace(0.0, motion.times[-1], 60)
+    q, x = curve(s)
+    np.testing.assert_allclose(x, origin(s), atol=1e-12)
+    pseudo = np.stack([axis(s)[:, 0] for axis in axes], axis=-1)
+    nearest = Rotation.from_matrix(pseudo)  # scipy's choice for a matrix that is no rotation
+    off = nearest.inv() * Rotation.from_quat(q[:, 0], scalar_first=True)
+    assert off.magnitude().max() < 1e-10
+    if not closed:
+        frames = np.stack([axis(motion.times)[:, 0] for axis in axes], axis=-1)
+        wanted = Rotation.from_quat(motion.quaternions[:, 0], scalar_first=True).as_matrix()
+        np.testing.assert_allclose(frames, wanted, atol=1e-11)
+
+
+@pytest.mark.parametrize(("options", "closed"), RIGID)
+def test_a_rigid_change_of_the_world_moves_frame_and_origin_together(
+    options: dict[str, Any], closed: bool
+) -> None:
+    """And one of the body's own frame, with a lever from the origin, moves them as it moves keyframes."""
+    motion = rigid(closed)
+    turn, shift = quaternion.normalise(np.array([0.3, -0.5, 0.7, 0.2])), np.array([3.0, -1.0, 2.0])
+    moved = qs.Motion(
+        motion.stamps,
+        quaternion.mul(turn, motion.quaternions),
+        quaternion.rotate(turn, motion.positions) + shift,
+    )
+    s = np.linspace(0.0, motion.times[-1], 60)
+    q, x = motion.curve("moving-frame", closed=closed, **options)(s)
+    other_q, other_x = moved.curve("moving-frame", closed=closed, **options)(s)
+    assert angles(other_q, quaternion.mul(turn, q)) < 1e-9
+    np.testing.assert_allclose(other_x, quaternion.rotate(turn, x) + shift, atol=1e-10)
+
+
+def test_positions_without_a_spline_have_no_origin() -> None:
+    motion = rigid(False)
+    with pytest.raises(ValueError, match="the positions are no B-spline"):
+        _ = motion.curve("kim").origin
+    bare = qs.Motion(motion.stamps, motion.quaternions)
+    with pytest.raises(ValueError, match="no positions"):
+        _ = bare.curve("moving-frame").origin
 
 
 @pytest.mark.parametrize(

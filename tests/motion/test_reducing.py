@@ -80,3 +80,30 @@ def test_a_scheme_that_passes_near_keyframes_keeps_no_bound() -> None:
 def test_wrong_bounds_are_refused(error: object) -> None:
     with pytest.raises(ValueError, match="a positive angle in rad"):
         figure(20).reduce("slerp", error=error)
+
+
+def test_a_solver_that_fails_on_few_keyframes_gets_more() -> None:
+    """Two updates are enough on keyframes that lie close together, and not on those that the bound asks for."""
+    motion, bound = figure(240), np.radians(2.0)
+    found = motion.reduce("kim", error=bound, max_iterations=2)
+    enough = motion.reduce("kim", error=bound).frames
+    assert not found.failures
+    assert found.largest <= bound
+    for track, (name, frames) in enumerate(found.frames.items()):
+        assert len(enough[name]) < len(frames) < 60
+        t, q = motion.times[frames], motion.quaternions[frames, track]
+        assert qs.build("kim", t, q, max_iterations=2).solve_report.converged
+
+
+def test_more_keyframes_than_are_practical_are_told() -> None:
+    rng = np.random.default_rng(0)
+    q = quaternion.exp(0.1 * rng.normal(size=(260, 2, 3)))
+    q[:, 1] = [1.0, 0.0, 0.0, 0.0]
+    found = qs.Motion(np.arange(260.0), q, tracks=["noise", "rest"]).reduce(
+        "min-torque", error=0.01
+    )
+    told = "min-torque is practical up to 200 keyframes, and more are needed within 0.573 degrees"
+    assert found.failures == {"noise": told}
+    assert {name: len(index) for name, index in found.frames.items()} == {"noise": 260, "rest": 2}
+    with pytest.raises(ValueError, match=f"^body: {told}"):
+        qs.Motion(np.arange(260.0), q[:, 0]).reduce("min-torque", error=0.01)

@@ -30,11 +30,14 @@ def parser() -> argparse.ArgumentParser:
     whole.add_argument("--version", action="version", version=f"quatspline {__version__}")
     commands = whole.add_subparsers(metavar="COMMAND", required=True, dest="name")
     commands.add_parser("list", help="schemes and what they claim")
+    options = commands.add_parser("options", help="the options of a scheme")
+    options.add_argument("scheme", metavar="SCHEME", help="see quatspline list")
     _add_run(commands)
     _add_compare(commands)
     _add_sample(commands)
     _add_reduce(commands)
     _add_info(commands)
+    _add_motions(commands)
     _add_report(commands)
     commands.add_parser("warmup", help="compile everything once, so that nothing waits later")
     return whole
@@ -64,6 +67,7 @@ def _add_compare(commands: Any) -> None:
     compare = commands.add_parser("compare", help="schemes on your own keyframes")
     _add_keyframes(compare, nargs="?")  # it may stand behind the words of --schemes
     _add_schemes(compare)
+    _add_option(compare, "of those schemes that have it")
     kept = "take every K-th frame for a keyframe, and measure at the frames left out"
     compare.add_argument("--keep", type=_count, metavar="K", help=kept)
     where = "for tables, figures and the page; by default KEYFRAMES-compared here"
@@ -101,6 +105,9 @@ def _add_sample(commands: Any) -> None:
         "--count", type=_count, metavar="N", help="samples in all, both ends included"
     )
     grid.add_argument("--at", metavar="FILE", help="at the times of another motion file")
+    _add_option(sample, "of the scheme")
+    signs = "keep the signs of the quaternions, which may go the long way round"
+    sample.add_argument("--no-align", dest="align", action="store_false", help=signs)
     held = "the first and last pose outside the keyframes' times"
     sample.add_argument("--hold", action="store_true", help=held)
     along = "how positions go: matched (to the scheme), linear, catmull-rom, cubic, ..."
@@ -116,6 +123,7 @@ def _add_reduce(commands: Any) -> None:
     bound = "the largest angle at a frame left out: 0.5deg, 0.01rad"
     reduce.add_argument("--error", type=_angle, required=True, metavar="ANGLE", help=bound)
     reduce.add_argument("--scheme", default="slerp", metavar="S", help="%(default)s")
+    _add_option(reduce, "of the scheme")
     together = "one set of frames for all joints, not one each"
     reduce.add_argument("--together", action="store_true", help=together)
     out = "keyframes by joint (.csv, .npz), or the motion rebuilt at its frames (.bvh, .glb)"
@@ -125,6 +133,19 @@ def _add_reduce(commands: Any) -> None:
 def _add_info(commands: Any) -> None:
     info = commands.add_parser("info", help="what a motion file is: tracks, rate, gaps, noise")
     _add_file(info)
+
+
+def _add_motions(commands: Any) -> None:
+    motions = commands.add_parser(
+        "motions", help="fetch the recorded clips that experiments measure on"
+    )
+    motions.add_argument(
+        "folder", nargs="?", type=Path, default=Path("motions"), metavar="DIR", help="%(default)s"
+    )
+    mirror = "a folder on the web that has all files by name, instead of their sources"
+    motions.add_argument("--from", dest="mirror", metavar="ADDRESS", help=mirror)
+    replaced = "replace files of these names that hold something else"
+    motions.add_argument("--force", action="store_true", help=replaced)
 
 
 def _add_report(commands: Any) -> None:
@@ -161,6 +182,13 @@ def _add_file(parser: argparse.ArgumentParser, nargs: Literal["?"] | None = None
 def _add_schemes(parser: argparse.ArgumentParser) -> None:
     names = "names, by blanks or commas"
     parser.add_argument("--schemes", nargs="+", metavar="S", action="append", help=names)
+
+
+def _add_option(parser: argparse.ArgumentParser, whose: str) -> None:
+    told = f"an option {whose}, may be repeated: see quatspline options S"
+    parser.add_argument(
+        "--option", dest="options", action="append", default=[], metavar="NAME=VALUE", help=told
+    )
 
 
 def _add_force(parser: argparse.ArgumentParser) -> None:

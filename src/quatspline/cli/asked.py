@@ -30,3 +30,14 @@ def told(arguments: argparse.Namespace, motion: Motion) -> bool:
     """Whether it is known what the times count."""
     known = motion.per_second != 1 or motion.skeleton is not None
     return known or arguments.time_unit is not None or arguments.frame_rate is not None
+
+
+def check_tracks(arguments: argparse.Namespace, motion: Motion, needs: Needs) -> None:
+    """Refuse what is not asked of several tracks, or asked of one alone."""
+    count, file = len(motion.tracks), arguments.keyframes
+    if count > 1 and arguments.keep is None:
+        raise ValueError(
+            f"{file}: {count} tracks are compared at the frames that --keep K leaves out"
+        )
+    if count > 1 and needs.limits:
+        raise ValueError(f"{file}: {needs.limits[0].flag} is asked of one track, here are {count}")

@@ -1,4 +1,4 @@
-"""The command line: list, run, compare, sample, reduce, info, report, warmup.
+"""The command line: list, options, run, compare, sample, reduce, info, motions, report, warmup.
 
 Exit status: 0 done; 1 something unforeseen failed; 2 bad usage or bad input, told in one line on
 stderr; 128 + n ended by signal n.  Whatever is slow to import waits until a command needs it.
@@ -76,7 +76,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _interrupted(command: str, status: int) -> int:
-    hint = ": the same command goes on where it stopped" if command == "run" else ""
+    hint = ": the same command goes on where it stopped" if command in ("run", "motions") else ""
     return _told(f"interrupted{hint}", status)
 
 
@@ -138,6 +138,12 @@ def _yes(claim: bool) -> str:
     return "yes" if claim else "no"
 
 
+def _options(arguments: argparse.Namespace) -> int:
+    from quatspline.cli import options
+
+    return options.command(arguments.scheme)
+
+
 def _run(arguments: argparse.Namespace) -> int:
     from quatspline.cli import running, words
 
@@ -157,26 +163,22 @@ def _run(arguments: argparse.Namespace) -> int:
 
 
 def _compare(arguments: argparse.Namespace) -> int:
-    from quatspline.cli import asked, compare, joints, recorded, words
+    from quatspline.cli import asked, compare, joints, options, recorded, words
     from quatspline.runs.results import Results
 
     # A wrong name is told before a long file is read.
     arguments.keyframes, schemes = words.of_compare(arguments.keyframes, arguments.schemes)
+    given = options.of_schemes(schemes, arguments.options)
     motion = recorded.motion_of(arguments)
-    body = len(motion.tracks) == 1
-    if not body and arguments.keep is None:
-        told = f"{len(motion.tracks)} tracks are compared at the frames that --keep K leaves out"
-        raise ValueError(f"{arguments.keyframes}: {told}")
     needs = asked.needs(arguments, motion)
-    if not body and needs.limits:
-        one = f"{needs.limits[0].flag} is for one track, not for {len(motion.tracks)}"
-        raise ValueError(f"{arguments.keyframes}: {one}")
+    asked.check_tracks(arguments, motion, needs)
+    body = len(motion.tracks) == 1
     out = arguments.out or Path(f"{Path(arguments.keyframes).stem}-compared")
     results = Results(out, force=arguments.force)
     with results.writing():
         results.guard((compare if body else joints).FILES, inputs=[arguments.keyframes])
         common = {"schemes": schemes, "results": results, "call": arguments.command}
-        common |= {"name": Path(arguments.keyframes).name}
+        common |= {"name": Path(arguments.keyframes).name, "options": given}
         if not body:
             return joints.command(motion, every=arguments.keep, **common)
         common |= {"needs": needs, "told": asked.told(arguments, motion)}
@@ -210,6 +212,12 @@ def _info(arguments: argparse.Namespace) -> int:
     return DONE
 
 
+def _motions(arguments: argparse.Namespace) -> int:
+    from quatspline.cli import motions
+
+    return motions.command(arguments.folder, mirror=arguments.mirror, force=arguments.force)
+
+
 def _warm_up(arguments: argparse.Namespace) -> int:
     from quatspline.runs.warmup import main
 
@@ -219,11 +227,13 @@ def _warm_up(arguments: argparse.Namespace) -> int:
 
 COMMANDS = {
     "list": _list,
+    "options": _options,
     "run": _run,
     "compare": _compare,
     "sample": _sample,
     "reduce": _reduce,
     "info": _info,
+    "motions": _motions,
     "report": _report,
     "warmup": _warm_up,
 }

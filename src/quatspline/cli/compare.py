@@ -5,7 +5,8 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -48,6 +49,7 @@ def command(
     needs: Needs,
     told: bool = False,
     every: int | None = None,
+    options: Mapping[str, Any] = MappingProxyType({}),
     call: Sequence[str] = (),
     name: str = "Your motion",
 ) -> int:
@@ -68,7 +70,7 @@ def command(
     keyframes = comparing.prepared(motion.stamps, motion.quaternions[:, 0], closed)
     results.begin(call, schemes=list(schemes) if schemes is not None else None)
     with always_compiled():
-        table, curves = comparing.compared(keyframes, schemes)
+        table, curves = comparing.compared(keyframes, schemes, options)
         if every is not None:
             table = _with_errors(table, curves, source, every)
             results.replays("compare", played(source, table, ERRORS[0], every, name))
@@ -76,7 +78,7 @@ def command(
         "compare",
         table,
         title=comparing.TITLE,
-        note=comparing.NOTE + (KEPT if every is not None else ""),
+        note=comparing.NOTE + (KEPT if every is not None else "") + comparing.told(options),
         formats=comparing.FORMATS | dict.fromkeys(ERRORS, ".3e"),
         keys=[],
     )

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from quatspline.engines.engine import always_compiled
 from quatspline.system.stdout import say
@@ -64,6 +64,7 @@ def command(
     schemes: Sequence[str] | None,
     every: int,
     results: Results,
+    options: Mapping[str, Any],
     call: Sequence[str],
     name: str,
 ) -> int:
@@ -78,7 +79,8 @@ def command(
     results.begin(call, schemes=list(schemes) if schemes is not None else None)
     title = TITLE.format(every=every, count=int(out.sum()))
     with always_compiled():
-        table, joints = _tables(results, _measured(motion, schemes, every, out), title)
+        rows = _measured(motion, schemes, every, out, options)
+        table, joints = _tables(results, rows, title, options)
         results.replays(NAME, played(motion, table, "rms_median", every, name))
     _drawn(results, table, joints)
     entry = {"title": title, "size": f"{len(out)} frames", "seed": None}
@@ -97,11 +99,16 @@ def command(
 
 
 def _measured(
-    motion: Motion, schemes: Sequence[str] | None, every: int, out: BoolArray
+    motion: Motion,
+    schemes: Sequence[str] | None,
+    every: int,
+    out: BoolArray,
+    options: Mapping[str, Any],
 ) -> list[Row]:
     """A row a scheme, with what was measured of each joint."""
     from quatspline import catalogue
     from quatspline.instruments.trials import attempted
+    from quatspline.options import among
     from quatspline.runs.experiment import Run
     from quatspline.timing.own_keyframes import left_out
 
@@ -109,25 +116,32 @@ def _measured(
     rows = []
     for scheme in Run(quick=True).progress(list(schemes or catalogue.schemes()), label="compare"):
         reason = left_out(scheme, work) if schemes is None else None
-        measure = partial(_row, motion, scheme, every)
+        given = among(catalogue.scheme(scheme), options)
+        measure = partial(_row, motion, scheme, every, given)
         row = attempted(measure)[0] if reason is None else {"failure": reason}
         rows.append({"scheme": scheme} | row)
     return rows
 
 
-def _row(motion: Motion, scheme: str, every: int) -> list[Row]:
+def _row(motion: Motion, scheme: str, every: int, given: Mapping[str, Any]) -> list[Row]:
     from quatspline.motion import keeping
 
-    return [keeping.row(motion, scheme, every)]
+    return [keeping.row(motion, scheme, every, given)]
 
 
-def _tables(results: Results, rows: Sequence[Row], title: str) -> tuple[pd.DataFrame, pd.DataFrame]:
+def _tables(
+    results: Results, rows: Sequence[Row], title: str, options: Mapping[str, Any]
+) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Write both tables: of schemes, and of every joint under each."""
     import pandas as pd
 
+    from quatspline.comparing import told
+
     table = pd.DataFrame(rows).reindex(columns=COLUMNS)
     table = table.sort_values(["rms_median", "scheme"], na_position="last", ignore_index=True)
-    table = results.table(NAME, table, title=title, note=NOTE, formats=FORMATS, keys=[])
+    table = results.table(
+        NAME, table, title=title, note=NOTE + told(options), formats=FORMATS, keys=[]
+    )
     of = [{"scheme": row["scheme"]} | joint for row in rows for joint in row.get("by_joint", [])]
     joints = pd.DataFrame(of, columns=["scheme", "joint", "rms", "largest"])
     formats = {"rms": ".3e", "largest": ".3e"}

@@ -34,7 +34,8 @@ def motion_of(arguments: argparse.Namespace) -> Motion:
     closed = getattr(arguments, "closed", False)
     with naming_file(path):
         motion = closing.returning(motion) if closed else closing.opened(motion)
-        prepare(motion.stamps, motion.quaternions, closed=closed)
+        align = getattr(arguments, "align", True)
+        prepare(motion.stamps, motion.quaternions, closed=closed, align=align)
     if motion.note:
         note(f"{path}: {motion.note}")
     return motion
@@ -71,15 +72,15 @@ def _check_out(arguments: argparse.Namespace) -> None:
 
 def sample(arguments: argparse.Namespace) -> None:
     """Serve ``quatspline sample``."""
-    from quatspline import catalogue
+    from quatspline.cli import options
 
-    catalogue.scheme(arguments.scheme)  # a wrong name is told before a long file is read
+    given = options.of_scheme(arguments.scheme, arguments.options)  # before a long file is read
     if arguments.file is not None:
         _check_out(arguments)
     motion = motion_of(arguments)
     with naming_file(arguments.keyframes):
-        options = {"closed": arguments.closed, "hold": arguments.hold}
-        curve = motion.curve(arguments.scheme, positions=arguments.positions, **options)
+        given |= {name: getattr(arguments, name) for name in ("closed", "hold", "align")}
+        curve = motion.curve(arguments.scheme, positions=arguments.positions, **given)
     if arguments.at is None:
         samples = sampled(curve, grid(curve, arguments.rate, arguments.count))
     else:
@@ -108,11 +109,11 @@ def _at(curve: MotionCurve, path: str) -> Motion:
 
 def reduce(arguments: argparse.Namespace) -> None:
     """Serve ``quatspline reduce``: a line for each joint, and the file asked for."""
-    from quatspline import catalogue
+    from quatspline.cli import options
     from quatspline.motion.files.keyframes import check_keyframe_suffix, write_keyframes
     from quatspline.motion.reducing import reduction
 
-    catalogue.scheme(arguments.scheme)
+    given = options.of_scheme(arguments.scheme, arguments.options)
     rebuilt = arguments.file is not None and Path(arguments.file).suffix.lower() in REBUILT
     if arguments.file is not None:
         _check_out(arguments)
@@ -120,7 +121,8 @@ def reduce(arguments: argparse.Namespace) -> None:
     if arguments.file is not None and not rebuilt:
         check_keyframe_suffix(arguments.file, motion)
     with naming_file(arguments.keyframes):
-        found = reduction(motion, arguments.scheme, arguments.error, arguments.together, {}, _bar)
+        wanted = arguments.scheme, arguments.error, arguments.together
+        found = reduction(motion, *wanted, given, _bar)
     for joint, reason in found.failures.items():
         note(f"{joint}: keeps all frames: {reason}")
     say(_lines(found.frames, len(motion.times), found.largest))

@@ -53,6 +53,18 @@ def set_end_rates(c, q, step, v0, a0, v1, a1):
 
 
 @inlined
+def set_cubic(c, q, step, c1, c2):
+    """q exp(phi(u)), phi the cubic from 0 to the step with coefficients c1 of u, c2 of u^2; a bound of |phi|."""
+    c3 = step - c1 - c2
+    g = -c2 - c3
+    put_quat(c, Q0, q)
+    _put_component(c, PHI, (0.0, step.x, g.x, -c3.x, 0.0, 0.0))
+    _put_component(c, PHI + 6, (0.0, step.y, g.y, -c3.y, 0.0, 0.0))
+    _put_component(c, PHI + 12, (0.0, step.z, g.z, -c3.z, 0.0, 0.0))
+    return max(norm(step), norm(c1) / 3.0, norm(2.0 * c1 + c2) / 3.0)  # Bernstein coefficients
+
+
+@inlined
 def _put_component(c, p, f):
     c[p], c[p + 1], c[p + 2], c[p + 3], c[p + 4], c[p + 5] = f
 

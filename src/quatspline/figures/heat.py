@@ -17,6 +17,10 @@ ROW = 0.17
 """Inches a row: the least at which 7-point names do not touch."""
 
 
+SHARE = 0.4
+"""Of the width of several maps, what their bar takes."""
+
+
 def log_heat(
     ax: Any,
     frame: pd.DataFrame,
@@ -26,11 +30,13 @@ def log_heat(
     names_shown: bool = True,
     colours: str = COLOURS,
     ticks: Mapping[float, str] | None = None,
+    under: Sequence[Any] | None = None,
 ) -> None:
     """Colour a frame of positive numbers, first row on top; grey where there is none.
 
     Numbers outside the limits take the colour of the nearer one, which the colour bar marks.  ``ticks`` are
-    what stands at numbers of the bar, by default powers of ten.
+    what stands at numbers of the bar, by default powers of ten; it stands ``under`` these axes, by default
+    the map's own, under none where they are empty: maps of one scale share a bar.
     """
     low, high = limits
     values = np.ma.masked_invalid(frame.to_numpy(dtype=float))
@@ -38,7 +44,11 @@ def log_heat(
     norm = mpl.colors.LogNorm(low, high, clip=True)
     image = ax.imshow(np.ma.clip(values, low, high), cmap=shades, norm=norm, aspect="auto")
     _label(ax, frame, names_shown)
-    bar = ax.figure.colorbar(image, ax=ax, orientation="horizontal", aspect=40, extend="both")
+    if under is not None and not under:
+        return
+    share = SHARE if under else 1.0
+    place = {"orientation": "horizontal", "aspect": 40, "extend": "both", "shrink": share}
+    bar = ax.figure.colorbar(image, ax=list(under or [ax]), **place)
     bar.set_label(label)
     if ticks is not None:
         bar.set_ticks(list(ticks), labels=list(ticks.values()))

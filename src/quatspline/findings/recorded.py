@@ -88,7 +88,7 @@ def keyframes(cell: Ledger) -> tuple[Part, ...]:
     steady = {**raw, "filter": STEADY}
     return said(
         "To rebuild every frame within {allowed:g} degrees the schemes need these multiples of slerp's keyframes "
-        f"(geometric mean over {{joints:d}} joints): of the motion as it is {_listed('r', '.2f')}; below {{steady}} "
+        f"(geometric mean over {{joints:.0f}} joints): of the motion as it is {_listed('r', '.2f')}; below {{steady}} "
         f"{_listed('s', '.2f')}.",
         allowed=cell("reduce", "error_degrees", scheme="slerp", **raw),
         joints=cell("reduce", "compared_joints", scheme="slerp", **raw),
@@ -102,9 +102,9 @@ def _whose(cell: Ledger) -> str:
     """Whose joints they are, as the subject of a sentence that quotes how many."""
     made = cell.values("reconstruct", "clip", scheme="slerp") == sorted([ALL, OWN, *CONTROLS])
     return (
-        "the {joints:d} joints of the walk that this project's generator made (no recording was given)"
+        "the {joints:.0f} joints of the walk that this project's generator made (no recording was given)"
         if made
-        else "{joints:d} recorded joints"
+        else "{joints:.0f} recorded joints"
     )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quatspline.inputs import stamps
-from quatspline.inputs.arrays import FloatArray, at, float_array, real_array
+from quatspline.inputs.arrays import BoolArray, FloatArray, at, float_array, real_array
 
 EDGE = 4
 """Samples this many ulp outside an open domain count as its end."""
@@ -23,10 +23,14 @@ class Domain:
     times : keyframe times as given (`stamps.stamps`), of a closed curve with the return
     period : the last of them since the first, in float64
     closed : whether samples wrap
+    hold : whether samples outside an open domain are taken at its nearer end
     """
 
-    def __init__(self, times: NDArray[Any], period: float, closed: bool) -> None:
+    def __init__(
+        self, times: NDArray[Any], period: float, closed: bool, hold: bool = False
+    ) -> None:
         self.times, self.period, self.closed = times, period, closed
+        self.hold = hold and not closed
         self.plain = times.dtype == np.float64
         self.origin = float(times[0]) if self.plain else 0.0
 
@@ -48,6 +52,13 @@ class Domain:
         since = given if self.plain else stamps.elapsed(given, self.times[0])
         exact = self.plain and (given.dtype.kind != "f" or given.dtype.itemsize >= 8)
         return float_array("t", since), self._slack if exact else self._slack_of(given.dtype)
+
+    def held(self, t: FloatArray, slack: float) -> tuple[FloatArray, BoolArray]:
+        """Samples as `take` gives them at the nearer end where they are outside, and which were."""
+        since = t - self.origin
+        outside = np.isfinite(t) & ((since < -slack) | (since > self.period + slack))
+        ends = self.origin, self.origin + self.period
+        return np.where(outside, np.clip(t, *ends), t), outside
 
     def wrap(self, t: FloatArray, slack: float) -> tuple[FloatArray, Any, Any]:
         """Times since the first keyframe (m,), brought into the domain.

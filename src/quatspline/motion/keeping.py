@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 from itertools import pairwise
 from typing import Any
 
@@ -55,10 +56,10 @@ def errors(
     return angles, np.stack(off, axis=1)
 
 
-def row(motion: Motion, scheme: str, every: int) -> dict[str, Any]:
+def row(motion: Motion, scheme: str, every: int, options: Mapping[str, Any]) -> dict[str, Any]:
     """Errors of one scheme over the joints that turn: medians and the worst, by name; all under "by_joint"."""
     began = time.perf_counter()
-    curve = motion.curve(scheme, every=every)
+    curve = motion.curve(scheme, every=every, **options)
     seconds = time.perf_counter() - began
     angles, ends = errors(motion, curve, left_out(motion, every))
     joints = [k for k in moving(motion) if motion.tracks[k] not in curve.failures]

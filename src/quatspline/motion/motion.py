@@ -190,7 +190,8 @@ class Motion:
         scheme : a name of `quatspline.schemes`
         every : keyframes are the frames 0, every, 2 every, ... and the last
         positions : "matched" takes the family of curves that is to positions what the scheme is to
-            orientations; by name: "linear", "catmull-rom", "cubic", "local-quintic", "quartic"
+            orientations, with a global scheme's degree and ends; by name: "linear", "catmull-rom",
+            "cubic", "local-quintic", "quartic"
         **options : of the scheme, and ``closed``, ``align``
 
         Raises

@@ -49,10 +49,10 @@ class MotionCurve:
         self.hold = switch("hold", given.pop("hold", False))
         if self.closed and len(motion.edges) > 2:
             raise ValueError("closed: the motion has gaps")
-        family = families.family(positions, catalogue.scheme(scheme))
+        self.family = families.family(positions, catalogue.scheme(scheme), given)
         build = partial(catalogue.build, scheme, **given)
         self.pieces = [
-            _Piece(motion, a, b, every, build, family)
+            _Piece(motion, a, b, every, build, self.family)
             for a, b in pairwise(motion.edges)
             if b - a > 1
         ]
@@ -77,6 +77,26 @@ class MotionCurve:
                 f"the motion is in {len(self.pieces)} pieces: each has its orientation"
             )
         return self.pieces[0].orientation
+
+    @property
+    def origin(self) -> Any:
+        """The B-spline of the positions, scipy's, in time since the first keyframe.
+
+        For schemes with a degree (``moving-frame``), and ends that positions take from the scheme: control
+        points ``.c`` (m, J, 3) on the knots ``.t`` of ``orientation.axes``.
+
+        Raises
+        ------
+        ValueError
+            Where there are no positions, they follow another family, or the motion is in pieces.
+        """
+        if self.motion.positions is None:
+            raise ValueError("the motion has no positions")
+        if not isinstance(self.family, families.SplineFamily):
+            raise ValueError("the positions are no B-spline: a scheme with a degree makes them one")
+        times = self.orientation.keyframes.knots
+        x = self.motion.positions[self.pieces[0].index]
+        return self.family.fitted(times, x, self.motion.closed and np.array_equal(x[0], x[-1]))
 
     @property
     def domain(self) -> tuple[float, float]:
@@ -139,7 +159,7 @@ class _Piece:
         index = begin + np.unique(
             [*range(0, turning, every), *([] if motion.closed else [turning - 1])]
         )
-        times = np.append(index, end - 1) if motion.closed else index
+        self.index = times = np.append(index, end - 1) if motion.closed else index
         t = motion.times[times]
         self.first, self.last = float(t[0]), float(t[-1])
         q = motion.quaternions[index]

@@ -7,14 +7,17 @@ last repeats the first; it gives a function of times (m,) -> (m, k).
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from quatspline.curve import Curve
+from quatspline.fitting.end_conditions import derivatives, fewest, interpolated, natural
 from quatspline.keyframes import segment_of
-from quatspline.options import nearest
+from quatspline.options import declared_by, nearest
 from quatspline.quaternion import FloatArray
 
 Places = Callable[[FloatArray], FloatArray]
@@ -86,6 +89,54 @@ def quartic(knots: FloatArray, x: FloatArray, closed: bool) -> Places:
     return _quintic(knots, x, slope, bend)
 
 
+@dataclass(frozen=True)
+class SplineFamily:
+    """B-splines of an odd degree k on the keyframes' times, C^(k-1), periodic where they close.
+
+    Attributes
+    ----------
+    degree : k; lower for keyframes too few for it
+    ends : "natural", "not-a-knot", "complete" (derivatives from k + 1 positions beside the end) or
+        "stationary" (at rest)
+    """
+
+    degree: int
+    ends: str
+
+    def __call__(self, knots: FloatArray, x: FloatArray, closed: bool) -> Places:
+        """A curve through x (n, k)."""
+        spline, first = self.fitted(knots, x, closed), knots[0]
+        return lambda t: np.asarray(spline(t - first))
+
+    def fitted(self, knots: FloatArray, x: FloatArray, closed: bool) -> Any:
+        """scipy's spline, in time since the first keyframe."""
+        from scipy.interpolate import BSpline
+
+        unit = 2.0 ** round(math.log2((knots[-1] - knots[0]) / (len(knots) - 1)))
+        t = (knots - knots[0]) / unit  # exact, and the spline's linear system is well scaled
+        degree, conditions = self._conditions(t, x, closed)
+        spline = interpolated(t, x, degree, conditions)
+        return BSpline(
+            unit * spline.t, spline.c, degree, extrapolate="periodic" if closed else True
+        )
+
+    def _conditions(self, t: FloatArray, x: FloatArray, closed: bool) -> tuple[int, Any]:
+        """The degree that so many keyframes allow, and the end conditions as scipy takes them."""
+        if closed:
+            return self.degree, "periodic"
+        degree, ends = self.degree, "complete" if self.ends == "stationary" else self.ends
+        while degree > 3 and fewest(degree, ends) > len(t):
+            degree -= 2
+        if fewest(degree, ends) > len(t):
+            ends = "natural"
+        if ends != "complete":
+            return degree, natural(degree, x.shape[1:]) if ends == "natural" else None
+        if self.ends == "stationary":
+            rest = [(m, np.zeros(x.shape[1:])) for m in range(1, (degree + 1) // 2)]
+            return degree, (rest, rest)
+        return degree, (derivatives(t, x, degree), derivatives(t[::-1], x[::-1], degree))
+
+
 FAMILIES: dict[str, Family] = {
     "linear": linear,
     "catmull-rom": catmull_rom,
@@ -97,23 +148,40 @@ FAMILIES: dict[str, Family] = {
 MATCHED = "matched"
 
 
-def family(name: str, scheme: type[Curve]) -> Family:
-    """The family of a name; for "matched" the one with a scheme's smoothness, order and locality."""
+def family(name: str, scheme: type[Curve], options: Mapping[str, Any] | None = None) -> Family:
+    """The family of a name; for "matched" the one with a scheme's smoothness, order and locality.
+
+    ``options`` are the scheme's: where all keyframes shape its curve, positions have its degree and ends.
+    """
     if name == MATCHED:
-        name = _matched(scheme)
+        return _matched(scheme, options or {})
     if name not in FAMILIES:
         raise ValueError(f"positions={name!r}: {nearest(name, [MATCHED, *FAMILIES])}")
     return FAMILIES[name]
 
 
-def _matched(scheme: type[Curve]) -> str:
+def _matched(scheme: type[Curve], options: Mapping[str, Any]) -> Family:
     if scheme.continuity < 1:
-        return "linear"
+        return linear
     if scheme.support is None:
-        return "cubic"
+        return _global(scheme, options)
     if scheme.continuity < 2 or scheme.order < 2:
-        return "catmull-rom"
-    return "quartic" if scheme.order == 2 else "local-quintic"
+        return catmull_rom
+    return quartic if scheme.order == 2 else local_quintic
+
+
+def _global(scheme: type[Curve], options: Mapping[str, Any]) -> Family:
+    """A B-spline where the scheme itself has a degree, or has other ends than natural ones."""
+    chosen = {name: parameter.default for name, parameter in declared_by(scheme).items()}
+    chosen |= {name: value for name, value in options.items() if name in chosen}
+    clamped = any(
+        value is not None and name.startswith(("start_", "end_")) for name, value in chosen.items()
+    )
+    ends = chosen.get("ends") or ("complete" if clamped else "natural")
+    ends = {"clamped": "complete"}.get(ends, ends)
+    if "degree" in chosen or ends != "natural":
+        return SplineFamily(chosen.get("degree", 3), ends)
+    return cubic
 
 
 def _continued(knots: FloatArray, x: FloatArray, closed: bool) -> tuple[FloatArray, FloatArray]:

@@ -1,7 +1,8 @@
 """Keyframe reduction: the frames of a dense motion from which a scheme rebuilds it within a bound.
 
 Greedy insertion at the worst frame between keyframes, then trimming of every keyframe whose removal keeps
-the bound; what comes out is measured once more on all frames.
+the bound; what comes out is measured once more on all frames.  Where a solver fails on that, segments are
+halved until it does not.
 """
 
 from __future__ import annotations
@@ -27,13 +28,16 @@ if TYPE_CHECKING:
 Frames = NDArray[np.intp]
 """Indices of frames, increasing."""
 
-FAR = 24
+FAR = 16
 """Keyframes around one within which a global scheme is tried without it: C^2 splines forget by a factor
 of 3 to 4 per keyframe.  What that leaves over is found when all frames are measured."""
 
-
 TRIED = 30
 """Iterations of a solver while keyframes are tried: one that does not settle would take all of its own."""
+
+
+class Impractical(ValueError):
+    """More keyframes are needed than a scheme says are practical."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,13 +82,13 @@ def reduction(
     source = quaternion.normalise(motion.quaternions)
     rebuilt = source.copy()
     frames: dict[str, Frames] = {}
-    errors: dict[str, ConvergenceError] = {}
+    errors: dict[str, ConvergenceError | Impractical] = {}
     for group in progress(groups):
         track = _Track(motion.times, source[:, group], scheme, error, options)
         keys = np.arange(len(motion.times))
         try:
             keys, rebuilt[:, group] = track.reduced()
-        except ConvergenceError as failure:
+        except (ConvergenceError, Impractical) as failure:
             errors |= dict.fromkeys(names[group], failure)
         frames |= dict.fromkeys(names[group], keys)
     if len(errors) == len(names):
@@ -103,11 +107,12 @@ class _Track:
         self.t, self.q, self.bound = t, q, bound
         cls = catalogue.scheme(scheme)
         self.least = min(max(cls.min_keyframes, 2), len(t))
+        self.name, self.most = scheme, cls.practical_keyframes or len(t)
         self.margin = (cls.support or FAR) // 2
         self.build: Callable[..., Curve] = partial(catalogue.build, scheme, **options)
         # A solve on few keyframes may fail where more succeed: frames judge what it gives, not its report.
         self.excused = among(cls, {"on_failure": "return"})
-        self.tried = among(cls, {"max_iterations": TRIED} | self.excused) | options
+        self.tried = cls.rough | among(cls, {"max_iterations": TRIED} | self.excused) | options
 
     def reduced(self) -> tuple[Frames, FloatArray]:
         """Keyframes, and what they rebuild.
@@ -115,12 +120,36 @@ class _Track:
         Raises
         ------
         ConvergenceError
-            Where the solver fails on the keyframes that were found, or on all frames.
+            Where the solver fails even on all frames.
+        Impractical
+            Where the scheme is not meant for as many keyframes as the bound needs.
         """
         keys = np.unique(np.linspace(0, len(self.t) - 1, self.least).astype(int))
         keys = self._trimmed(self._within(keys, self.tried))
-        keys = self._within(keys, self.excused)  # all frames are measured, once more
-        return keys, self.build(self.t[keys], self.q[keys])(self.t)
+        while True:
+            keys = self._within(keys, self.excused)  # all frames are measured, once more
+            try:
+                return keys, self.build(self.t[keys], self.q[keys])(self.t)
+            except ConvergenceError as failure:
+                keys = self._denser(keys, failure)
+
+    def _denser(self, keys: Frames, failure: ConvergenceError) -> Frames:
+        """Keyframes with the segments halved at which the solver failed, or all of them.
+
+        Raises
+        ------
+        ConvergenceError
+            The failure, where there is nothing to halve.
+        """
+        wide = np.diff(keys) > 1
+        if not wide.any():
+            raise failure
+        t, q = self.t[keys], self.q[keys]
+        missed = quaternion.distance(self.build(t, q, **self.excused)(t), q).max(axis=1)
+        lost = ~(missed <= failure.report.tolerance)
+        there = wide & (lost[:-1] | lost[1:])
+        halved = there if there.any() else wide
+        return np.union1d(keys, (keys[:-1] + keys[1:])[halved] // 2)
 
     def _errors(self, keys: Frames, first: int, last: int, options: dict[str, Any]) -> FloatArray:
         """Angles of the frames from first to last, the largest of all joints."""
@@ -141,6 +170,11 @@ class _Track:
             inner = [errors[keys[i] + 1 : keys[i + 1]] for i in beyond]
             new = [keys[i] + 1 + int(np.argmax(e)) for i, e in zip(beyond, inner, strict=True)]
             keys = np.union1d(keys, new)
+            if len(keys) > self.most:
+                raise Impractical(
+                    f"{self.name} is practical up to {self.most} keyframes, and more are needed "
+                    f"within {np.degrees(self.bound):.3g} degrees"
+                )
 
     def _trimmed(self, keys: Frames) -> Frames:
         """Keyframes without those whose removal keeps the bound around them, one after the other."""

@@ -14,6 +14,9 @@ GAP = 5.0
 THIRD = np.sqrt(20.0)
 """The third difference of white noise is this many times as large as the noise."""
 
+STAMPS = {1: "s", 10**3: "ms", 10**6: "us", 10**9: "ns"}
+"""Units of stamps by their number in a second."""
+
 NAMED = 8
 """Names of tracks that are listed."""
 
@@ -23,7 +26,7 @@ def summary(motion: Motion) -> list[str]:
     rows = {
         "tracks": _tracks(motion),
         "frames": f"{len(motion.quaternions)}{', closed' if motion.closed else ''}",
-        "start": f"{motion.start!r}, {motion.per_second:,} a second",
+        "start": f"{motion.start!r} {STAMPS[motion.per_second]}",
         "positions": _positions(motion),
     }
     if len(motion.times) > 1:
@@ -52,14 +55,16 @@ def _positions(motion: Motion) -> str:
         return "none"
     moving = (np.ptp(motion.positions, axis=0) > 0.0).any(axis=-1)
     unit = "metres" if motion.unit == "m" else "the file's unit"
-    return f"in {unit}, of {int(moving.sum())} tracks changing"
+    return f"in {unit}, {int(moving.sum())} of {moving.size} changing"
 
 
 def _spacings(motion: Motion) -> dict[str, str]:
     steps = np.diff(motion.times)
     median = float(np.median(steps))
     gaps = np.flatnonzero(steps > GAP * median)
-    rate = f"{1.0 / median:.6g} Hz (median; spacings {steps.min():.4g} to {steps.max():.4g} s)"
+    shortest, longest = f"{steps.min():.4g}", f"{steps.max():.4g}"
+    spread = "even" if shortest == longest else f"median; spacings {shortest} to {longest} s"
+    rate = f"{1.0 / median:.6g} Hz ({spread})"
     if not gaps.size:
         return {"rate": rate, "gaps": "none"}
     worst = int(steps.argmax())

@@ -74,9 +74,9 @@ class PeerCurve(Curve):
         """
         return None
 
-    def _build(self, keyframes: Keyframes, given: dict[str, Any]) -> None:
+    def _build(self, keyframes: Keyframes, given: dict[str, Any], hold: bool = False) -> None:
         with undivided(), quiet(), _alone(self.peer or ""):
-            super()._build(keyframes, given)
+            super()._build(keyframes, given, hold)
 
     def _evaluate(self, *arguments: Any) -> int:
         with quiet():

@@ -84,6 +84,12 @@ def clip(name: str) -> Motion:
     return _read(known[name])
 
 
+def middle(motion: Motion, frames: int) -> Motion:
+    """So many frames from the middle of a motion, or all of a shorter one."""
+    first = max(0, (len(motion.times) - frames) // 2)
+    return motion.frames(slice(first, first + frames))
+
+
 @cache
 def _read(path: Path) -> Motion:
     with warnings.catch_warnings(record=True) as told:

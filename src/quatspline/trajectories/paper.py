@@ -9,6 +9,7 @@ paper's 16 and 40 steps.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -22,7 +23,7 @@ RECONSTRUCTED = (
     "iteration takes the paper's 16 (key) and 40 (teapot) steps."
 )
 
-SOLVE = {"stop": "change", "tolerance": 1e-6}
+SOLVE: dict[str, Any] = {"stop": "change", "tolerance": 1e-6}
 """How the paper's B-splines are solved: Nielson's published stop rule at the paper's tolerance."""
 
 

@@ -146,6 +146,8 @@ def _format(path: str | Path) -> Format:
     if double in _FORMATS:
         return _FORMATS[double]
     suffix = suffixes[-1] if suffixes else ""
+    if suffix == ".asf":
+        raise MotionFileError(f"{given}: a skeleton without motion: name the .amc that moves it")
     if suffix not in _FORMATS:
         raise MotionFileError(f"{given}: unknown suffix {suffix!r}: {nearest(suffix, _FORMATS)}")
     return _FORMATS[suffix]

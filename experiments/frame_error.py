@@ -1,0 +1,83 @@
+"""The error of moving frames against the keyframes' spacing, for each degree: order and constant."""
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from quatspline.families.frames import DEGREES
+from quatspline.figures import style
+from quatspline.instruments.frame_error import frame_error
+from quatspline.instruments.trials import Row
+from quatspline.runs.experiment import Run, crossed
+
+TITLE = "The error of moving frames"
+PAPER = False
+KEYS = ["degree", "ends", "keyframes"]
+NOTE = (
+    "moving-frame through keyframes of a closed motion, a spin of one turn times a roll of two; lower is better. "
+    "order: of angle, from the level before. constant: angle over h^(k+1); expected: what the interior of a flat "
+    "spline predicts, which closed curves have everywhere. axis_constant: the largest error of an entry of the axes "
+    "over h^(k+1) max |R^(k+1)|; axis_bound: that of the worst function on uniform knots. 'given': complete ends with "
+    "the motion's own velocities and, from degree 5, accelerations; 'complete': all estimated. Below 1e-14 rad errors "
+    "are rounding, and have no constant."
+)
+FORMATS = {
+    "spacing": ".3g",
+    "angle": ".2e",
+    "order": ".2f",
+    **dict.fromkeys(("constant", "expected", "axis_constant", "axis_bound"), ".3g"),
+}
+ENDS = ("closed", "given", "complete", "not-a-knot", "natural")
+TITLES = {"closed": "closed", "complete": "complete ends", "natural": "natural ends"}
+TICKS = (0.02, 0.05, 0.1, 0.2, 0.5)
+COUNTS = (12, 24, 48, 96, 192, 384)
+
+
+def cells(run: Run) -> list[dict[str, Any]]:
+    return crossed(degree=DEGREES, ends=ENDS)
+
+
+def measure_cell(run: Run, degree: int, ends: str) -> list[Row]:
+    rows = []
+    for count in COUNTS[:4] if run.quick else COUNTS:
+        rows.append({"degree": degree, "ends": ends, "keyframes": count})
+        rows[-1] |= frame_error(degree, ends, count)
+    return rows
+
+
+def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
+    by = table.groupby(["degree", "ends"])
+    order = (table["angle"] / by["angle"].shift()).map(np.log)
+    order /= (table["spacing"] / by["spacing"].shift()).map(np.log)
+    table.insert(5, "order", order.where(table["constant"].notna()))
+    return table
+
+
+def draw(table: pd.DataFrame) -> Figure:
+    fig, panels = style.axes(style.PAGE, 3.4, 1, 3, sharey=True)
+    for ax, ends in zip(panels[0], ("closed", "complete", "natural"), strict=True):
+        for degree, color in zip(DEGREES, style.PALETTE, strict=False):
+            rows = table[(table["degree"] == degree) & (table["ends"] == ends)]
+            ax.plot(rows["spacing"], rows["angle"], "o-", c=color, ms=3, label=f"degree {degree}")
+            if ends == "closed":
+                bound = rows["expected"] * rows["spacing"] ** (degree + 1)
+                ax.plot(rows["spacing"], bound, ":", c=color, lw=0.8)
+        ax.set(xscale="log", yscale="log", title=TITLES[ends], xlabel="keyframe spacing (t)")
+        ax.set_xticks(TICKS, [f"{tick:g}" for tick in TICKS])
+        ax.minorticks_off()
+        ax.set_ylim(1e-16, 5.0)
+    panels[0, 0].set_ylabel("largest error (rad)")
+    style.letters(panels[0])
+    style.legend_of(fig, panels[0, 0], 4)
+    return fig
+
+
+def caption(table: pd.DataFrame) -> str:
+    return (
+        "Largest angle between moving frames and the closed motion that their keyframes come from, against the "
+        "spacing, by the degree of the splines: (a) closed curves, with the constants of flat splines dotted; the "
+        "same motion cut open (b) with complete ends, estimated from the keyframes, (c) with natural ones, which "
+        "leave their own error whatever the degree is inside."
+    )
