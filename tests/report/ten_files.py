@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
-from quatspline import quaternion
+from quatspline import comparing, quaternion
+from quatspline.cli import compare
+from quatspline.engines.engine import always_compiled
 from quatspline.findings.needs import Needs
 from quatspline.quaternion import FloatArray
 
@@ -131,3 +134,32 @@ FILES: dict[str, Callable[[], File]] = {
         two_keyframes,
     )
 }
+
+SCHEMES = (
+    *("slerp", "squad", "catmull-rom", "nielson", "kim", "spherical-average", "log-cubic"),
+    *("quartic", "quintic", "local-quintic", "monotone-quintic", "smoothing-spline"),
+)
+"""What is compared on them: in-house schemes of every kind, on any machine the same."""
+
+ANSWERS = Path(__file__).parents[1] / "data" / "compare"
+"""What the terminal shows of each; timings are all the same."""
+
+
+def terminal(name: str) -> list[str]:
+    """What ``quatspline compare`` would print of a file, with every timing 10 ns."""
+    file = FILES[name]()
+    keyframes = comparing.prepared(file.times, file.quaternions, file.closed)
+    with always_compiled():
+        table, _ = comparing.compared(keyframes, SCHEMES)
+    table["seconds_per_sample"] = 1e-8
+    return compare.spoken(compare.answer(keyframes, table, file.needs), table, file.needs)
+
+
+def main() -> None:
+    """Write the texts anew: ``python -m report.ten_files`` in the folder of the tests."""
+    for name in FILES:
+        (ANSWERS / f"{name}.txt").write_text("\n".join(terminal(name)) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

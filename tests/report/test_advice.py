@@ -189,14 +189,13 @@ def test_the_papers_curve_is_placed() -> None:
     def placed(**given: float) -> str:
         return told(row("a", **GLOBAL), row("quartic", **GLOBAL, **given))[-1]
 
-    least = "The paper's quartic has 1.17 times the least torque of all measured and "
+    least = "The paper's quartic has 1.17 times the least torque and "
     assert placed(torque=1.17) == least + "the least peak acceleration of all measured."
     assert placed(torque=1.17, peak=1.26) == (
         least + "1.26 times the least peak acceleration of all measured."
     )
     assert placed(torque=1.0001) == (
-        "The paper's quartic has the least torque of all measured to three digits and the least peak acceleration of "
-        "all measured."
+        "The paper's quartic has the least torque to three digits and the least peak acceleration of all measured."
     )
 
 

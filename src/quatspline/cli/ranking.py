@@ -95,7 +95,10 @@ def _others(frame: pd.DataFrame, rows: list[Row], needs: Needs) -> Iterator[str]
     if len(left):
         why = Counter(_reason(row, needs) for row in records(left))
         told = ", ".join(f"{count} {reason}" for reason, count in why.most_common())
-        yield f"{len(left)} more on the page: {told}."
+        said = (
+            f": {told}" if len(why) > 1 else f", {'all ' if len(left) > 1 else ''}{next(iter(why))}"
+        )
+        yield f"{len(left)} more on the page{said}."
 
 
 def _reason(row: Row, needs: Needs) -> str:
@@ -103,11 +106,11 @@ def _reason(row: Row, needs: Needs) -> str:
     smooth = 2 if needs.smooth is None else needs.smooth
     tests = (
         ("not measured", lambda: isinstance(row["failure"], str)),
-        ("not what was asked for", lambda: bool(needs.broken(row))),
-        ("not through the keyframes", lambda: row["misses"] > candidates.MET),
+        ("lacking what was asked for", lambda: bool(needs.broken(row))),
+        ("missing the keyframes", lambda: row["misses"] > candidates.MET),
         ("with leaps", lambda: row["continuity"] < 0),
-        ("whose velocity jumps", lambda: row["continuity"] < min(smooth, 1)),
-        ("whose acceleration jumps", lambda: row["continuity"] < smooth),
-        ("that turn during holds", lambda: row["hold_rotation"] > candidates.STILL),
+        ("with jumps of the velocity", lambda: row["continuity"] < min(smooth, 1)),
+        ("with jumps of the acceleration", lambda: row["continuity"] < smooth),
+        ("turning during holds", lambda: row["hold_rotation"] > candidates.STILL),
     )
     return next((reason for reason, applies in tests if applies()), "ranked lower")

@@ -164,7 +164,7 @@ def _half_turns(steps: FloatArray, pair: Pair) -> Iterator[list[Part]]:
         told = "exactly half a turn, so that rounding decides which way round it goes"
         if left > ROUNDING:
             more = significant(left)
-            told = f"{steps[k]:.4g} degrees: {more} degrees more, and it goes the other way round"
+            told = f"{steps[k]:.4g} degrees: {more} more, and it goes the other way round"
         yield [
             f"the step between {pair(k)} is {told}{_others(half.size, 'such step')}. A keyframe between them would "
             "settle which way is meant."
@@ -188,7 +188,7 @@ def _noise(frame: pd.DataFrame) -> Iterator[list[Part]]:
         yield [
             "the keyframes have about ",
             multiple(noisy.cell("noise")),
-            " degrees of noise about each axis, as their third differences tell: smooth them, or expect every curve "
+            " degrees of noise about each axis, judging by their third differences: smooth them, or expect every curve "
             "that passes through them to repeat it, and its rates to amplify it.",
         ]
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 from math import isclose
 
 import numpy as np
@@ -33,15 +32,23 @@ def _has_torque(table: Table) -> tuple[Part, ...]:
     return ("has ", *_over_least("torque", "torque", table), ", ") if known and not at_rest else ()
 
 
-def _over_least(energy: str, thing: str, table: Table) -> tuple[Part, ...]:
-    """How much of an energy a scheme needs, as an object of "has"."""
-    column, least = f"{energy}_over_least", f"the least {thing} of all {_all(table)}"
+def _over_least(energy: str, thing: str, table: Table, *, whole: bool = True) -> tuple[Part, ...]:
+    """How much of an energy a scheme needs, as an object of "has"; of which curves' least, if it is the whole."""
+    column = f"{energy}_over_least"
+    least = f"the least {thing}{f' of all {_all(table)}' if whole else ''}"
     over = table.best[column]
     if np.isinf(over):
         return (f"a {thing} where another needs none",)
     if over - 1.0 > EQUAL:
         return table.quote(column, ROUNDED), f" times {least}"
     return (least if over == 1.0 else f"{least} to three digits",)
+
+
+def _over_both(table: Table) -> tuple[Part, ...]:
+    """Torque and peak acceleration, whose curves are named once."""
+    alone = bool(np.isinf(table.best["peak_over_least"]))
+    torque = _over_least("torque", "torque", table, whole=alone)
+    return *torque, " and ", *_over_least("peak", "peak acceleration", table)
 
 
 def _all(table: Table) -> str:
@@ -111,8 +118,7 @@ PHRASES: dict[str, Words] = {
     "more": _more,
     "price": _price,
     "at torque": _at_torque,
-    "torque over least": partial(_over_least, "torque", "torque"),
-    "peak over least": partial(_over_least, "peak", "peak acceleration"),
+    "over both": _over_both,
     "schemes": _schemes,
     "reason": lambda table: (Quote((table.cell("failure"), table.cell("scheme")), "reason"),),
 }

@@ -193,7 +193,7 @@ def _beside(needs: Needs) -> tuple[Question, ...]:
             rank,
         ),
         Question(
-            "The paper's quartic has {torque over least} and {peak over least}.",
+            "The paper's quartic has {over both}.",
             (
                 lambda rows, taken: ~alike(rows, taken) & (rows["scheme"] == PAPERS),
                 lambda rows, _: np.isfinite(rows["torque_over_least"]),
