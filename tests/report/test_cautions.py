@@ -65,7 +65,9 @@ def test_a_gap_and_almost_a_duplicate_are_said_with_their_lengths() -> None:
         "spacing: what a curve does there is its own invention."
     )
     (line,) = warned([0.0, 1.0, 1.005, 2.1, 3.0], q)
-    assert "keyframes 1 and 2 (1 s and 1.005 s after the first) are almost duplicates, 0.005 s" in line
+    assert (
+        "keyframes 1 and 2 (1 s and 1.005 s after the first) are almost duplicates, 0.005 s" in line
+    )
 
 
 def test_a_long_hold_is_no_gap() -> None:

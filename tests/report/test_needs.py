@@ -9,12 +9,10 @@ from quatspline.comparing import COLUMNS, ENERGIES
 from quatspline.findings.needs import Needs, significant
 from quatspline.findings.recommendation import recommendation
 
-GOOD = {
-    **{"continuity": 2, "misses": 0.0, "torque": 1.0, "jerk": 1.0, "peak": 1.0, "length": 1.0},
-    **{"key_speed": 0.5, "peak_speed": 1.5, "keyframes_length": 1.0, "support": "4", "noise": 0.0},
-    **{"lookahead": "1", "excursion": 5.0, "peak_rate": 30.0, "peak_acceleration": 50.0},
-    **{"seconds_set_up": 1e-8, "seconds_per_sample": 1e-8},
-}
+GOOD = {"continuity": 2, "misses": 0.0, "torque": 1.0, "jerk": 1.0, "peak": 1.0, "length": 1.0}
+GOOD |= {"key_speed": 0.5, "peak_speed": 1.5, "keyframes_length": 1.0, "support": "4", "noise": 0.0}
+GOOD |= {"lookahead": "1", "excursion": 5.0, "peak_rate": 30.0, "peak_acceleration": 50.0}
+GOOD |= {"seconds_set_up": 1e-8, "seconds_per_sample": 1e-8}
 
 
 def told(needs: Needs, **rows: dict[str, object]) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import ast
 import math
 from collections.abc import Callable
 from contextlib import suppress
@@ -18,7 +19,14 @@ REFUSED = 2
 
 
 class _Parser(argparse.ArgumentParser):
-    """Tells bad usage in one line."""
+    """Tells bad usage in one line, and what follows its help when that is asked for."""
+
+    closing: Callable[[], str] | None = None
+
+    def format_help(self) -> str:
+        """The help, and what closes it."""
+        text = super().format_help()
+        return f"{text}\n{self.closing()}\n" if self.closing else text
 
     def error(self, message: str) -> NoReturn:
         self.exit(REFUSED, f"{self.prog}: {one_line(message)} (see {self.prog} --help)\n")
@@ -50,6 +58,7 @@ def _add_run(commands: Any) -> None:
         description="Run experiments: by default all, the paper's in full and the others at quick "
         "size. A run that was interrupted goes on where it stopped when started alike.",
     )
+    run.closing = _experiments
     run.add_argument("experiments", nargs="*", metavar="EXPERIMENT", help="by default all")
     _add_schemes(run)
     size = run.add_mutually_exclusive_group()
@@ -61,6 +70,24 @@ def _add_run(commands: Any) -> None:
     where = run.add_mutually_exclusive_group()
     where.add_argument("--jobs", type=_count, metavar="N", help="processes; by default one a core")
     where.add_argument("--dask", metavar="ADDRESS", help="a Dask scheduler that measures instead")
+
+
+def _experiments() -> str:
+    """Each experiment with the first line of its file; none is loaded."""
+    from quatspline.runs.experiment import files
+
+    said = {name: _first_line(path) for name, path in files().items()}
+    width = max(map(len, said), default=0)
+    return "\n".join(
+        ["experiments:", *(f"  {name:{width}}  {line}" for name, line in said.items())]
+    )
+
+
+def _first_line(path: Path) -> str:
+    """What a file says of itself; nothing where it is no Python."""
+    with suppress(SyntaxError, ValueError):
+        return (ast.get_docstring(ast.parse(path.read_bytes())) or "").partition("\n")[0]
+    return ""
 
 
 def _add_compare(commands: Any) -> None:
