@@ -298,3 +298,48 @@ def test_the_edge_pack_never_shows_a_traceback(
     assert table.set_index("scheme")["failure"].isna()["local-quintic"], told.out
     first = next(line for line in told.out.splitlines() if not line.startswith("Warning: "))
     assert first.startswith(("Take ", "No recommendation")), told.out
+
+
+HINGE = "t_ms,qw,qx,qy,qz\n0,1,0,0,0\n1000,0.8,0.6,0,0\n1500,0.8,0.6,0,0\n2200,0.6,0.8,0,0\n"
+
+
+def test_the_command_takes_needs_in_seconds(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    keyframes = tmp_path / "hinge.csv"
+    keyframes.write_text(HINGE.replace("t_ms", "t"))
+    names = ["slerp", "local-quintic", "monotone-quintic"]
+    call = ["compare", str(keyframes), "--schemes", *names, "--force", "--time-unit", "ms"]
+    call += ["--max-excursion", "0.5"]
+    for limit, taken in (("200", "Take monotone-quintic (ours): "), ("60", "No scheme measured")):
+        out = tmp_path / limit
+        assert commands.main([*call, "--max-rate", limit, "--out", str(out)]) == 0
+        lines = capsys.readouterr().out.splitlines()
+        assert lines[0].startswith("Warning: keyframes 1 and 2 (1 s and 1.5 s after the first)")
+        assert lines[1].startswith(taken)
+        page = (out / "report.html").read_text(encoding="utf-8")
+        assert "while they stand still" in page
+        assert lines[-1] not in page  # a line of the table, which the page has whole
+    table = pd.read_csv(tmp_path / "200" / "compare.csv").set_index("scheme")
+    peak = 1000 * table["peak_rate"].to_dict()["slerp"]  # of degrees a millisecond
+    assert peak == pytest.approx(2 * np.degrees(np.arccos(0.8)))
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        ["--smooth", "3"],
+        ["--causal", "-1"],
+        ["--max-rate", "0"],
+        ["--max-excursion", "nan"],
+        ["--time-unit", "fortnight"],
+        ["--time-unit", "1/0 s"],
+    ],
+)
+def test_bad_needs_are_refused_in_a_line(
+    given: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert commands.main(["compare", "keys.csv", *given]) == 2
+    told = capsys.readouterr().err.strip().splitlines()
+    assert len(told) == 1
+    assert given[0] in told[0]
