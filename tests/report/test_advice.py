@@ -154,8 +154,8 @@ def test_a_fairer_scheme_is_named_with_what_speaks_against_it() -> None:
 def test_equal_is_said_as_equal(torque: float) -> None:
     lines = told(row("a", torque=torque), row("b", **GLOBAL))
     assert len(lines) == 1
-    assert "the least torque of all measured" in lines[0]
-    assert ("to three digits" in lines[0]) == (torque != 1.0)
+    nearly = "" if torque == 1.0 else ", to three digits,"
+    assert f"has the least torque{nearly} of all measured, and " in lines[0]
     assert " times" not in lines[0]
 
 
@@ -195,7 +195,7 @@ def test_the_papers_curve_is_placed() -> None:
         least + "1.26 times the least peak acceleration of all measured."
     )
     assert placed(torque=1.0001) == (
-        "The paper's quartic has the least torque to three digits and the least peak acceleration of all measured."
+        "The paper's quartic has the least torque, to three digits, and the least peak acceleration of all measured."
     )
 
 

@@ -35,13 +35,12 @@ def _has_torque(table: Table) -> tuple[Part, ...]:
 def _over_least(energy: str, thing: str, table: Table, *, whole: bool = True) -> tuple[Part, ...]:
     """How much of an energy a scheme needs, as an object of "has"; of which curves' least, if it is the whole."""
     column = f"{energy}_over_least"
-    least = f"the least {thing}{f' of all {_all(table)}' if whole else ''}"
-    over = table.best[column]
+    over, of = table.best[column], f" of all {_all(table)}" if whole else ""
     if np.isinf(over):
         return (f"a {thing} where another needs none",)
     if over - 1.0 > EQUAL:
-        return table.quote(column, ROUNDED), f" times {least}"
-    return (least if over == 1.0 else f"{least} to three digits",)
+        return table.quote(column, ROUNDED), f" times the least {thing}{of}"
+    return (f"the least {thing}{'' if over == 1.0 else ', to three digits,'}{of}",)
 
 
 def _over_both(table: Table) -> tuple[Part, ...]:
