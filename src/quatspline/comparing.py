@@ -12,18 +12,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from quatspline import keyframes as kf
-from quatspline import quaternion
 from quatspline.catalogue import scheme, schemes
 from quatspline.curve import Curve
 from quatspline.engines.engine import always_compiled
-from quatspline.instruments.continuity import jumps, measured_continuity, rounding, speeds
-from quatspline.instruments.curvature import curvature_energy
-from quatspline.instruments.derivatives import closed_forms
-from quatspline.instruments.extent import extent
-from quatspline.instruments.fairness import fairness
+from quatspline.instruments.own_keyframes import ENERGIES, measured, steps
 from quatspline.instruments.rescue import solved
 from quatspline.instruments.told_noise import told_noise
-from quatspline.instruments.trials import Row, attempted, facts
+from quatspline.instruments.trials import Row, attempted
 from quatspline.keyframes import Keyframes
 from quatspline.options import among, declared_by, nearest
 from quatspline.runs.experiment import Run
@@ -36,7 +31,6 @@ if TYPE_CHECKING:
 TOLERANCE = 1e-9
 """Of iterative schemes, in rad."""
 
-ENERGIES = ("torque", "jerk", "peak")
 MET = 1e-6
 """Largest angle at a keyframe, in rad, that counts as passing through it."""
 
@@ -137,7 +131,7 @@ def compared(
         row = attempted(measure)[0] if reason is None else {"failure": reason}
         rows.append({"scheme": name} | row)
     table = pd.DataFrame(rows).reindex(columns=COLUMNS)
-    table["keyframes_length"] = _steps(keyframes)
+    table["keyframes_length"] = float(steps(keyframes).sum())
     table["noise"] = np.degrees(told_noise(keyframes))
     for name, seconds in seconds_of(keyframes, curves).items():
         table.loc[table["scheme"] == name, list(seconds)] = list(seconds.values())
@@ -196,64 +190,5 @@ def _row(
         curve, note = solved(cls, keyframes, **given)
     except ConvergenceError as error:  # in words for a table
         return [{"failure": str(error)}]
-    smooth = measured_continuity(jumps(curve))
-    fair = _above_rounding(curve, fairness(curve))
-    if smooth < 1:  # a jump of the velocity is an infinite torque, which no quadrature sees
-        fair |= dict.fromkeys(ENERGIES, np.inf)
-    pace, report = speeds(curve), curve.solve_report
-    row = {
-        "continuity": smooth,
-        "misses": _misses(curve),
-        **fair,
-        "key_speed": pace["least_key_speed"],
-        "peak_speed": pace["peak_speed"],
-        **_asked_of_a_body(curve, smooth, float(fair["peak"])),
-        "curvature": _bending(curve, smooth),
-        "support": _or_all(curve.support),
-        "lookahead": _or_all(curve.lookahead),
-        "iterations": report.iterations if report else None,
-        "solver": report.method if report else None,
-        "note": note,
-        **facts(curve),
-    }
     curves[name] = curve  # of what failed, no seconds
-    return [row]
-
-
-def _or_all(count: int | None) -> str:
-    return "all" if count is None else str(count)
-
-
-def _asked_of_a_body(curve: Curve, smooth: int, peak: float) -> Row:
-    """Columns in degrees; a curve that leaps has no rate."""
-    row = extent(curve) | {"peak_acceleration": float(np.degrees(peak))}
-    return row if smooth >= 0 else row | {"peak_rate": np.inf}
-
-
-def _bending(curve: Curve, smooth: int) -> float:
-    """The curvature energy, infinite at corners; stencils on libraries' orientations would take too long."""
-    if not closed_forms(curve):
-        return np.nan
-    return np.inf if smooth < 1 else curvature_energy(curve).energy
-
-
-def _above_rounding(curve: Curve, fair: Row) -> Row:
-    """Energies of which nothing but rounding is left, at rest or at a constant rate, are zero."""
-    h = curve.keyframes.spacings
-    alpha, slope = (rounding(curve, order) for order in (2, 3))
-    floors = (alpha**2 * (h**-3).sum(), slope**2 * (h**-5).sum(), alpha * (h**-2).max())
-    zero = [name for name, floor in zip(ENERGIES, floors, strict=True) if fair[name] <= floor]
-    return fair | dict.fromkeys(zero, 0.0)
-
-
-def _steps(keyframes: Keyframes) -> float:
-    """The sum of the angles between neighbouring keyframes, rad: what a curve turns that wanders nowhere."""
-    q = keyframes.quaternions
-    after = np.concatenate([q[1:], q[:1]]) if keyframes.closed else q[1:]
-    return float(quaternion.distance(q[: len(after)], after).sum())
-
-
-def _misses(curve: Curve) -> float:
-    """The largest angle at a keyframe, rad."""
-    at = curve.times[: curve.keyframes.count]
-    return float(quaternion.distance(curve(at), curve.keyframes.quaternions).max())
+    return [measured(curve) | {"note": note}]

@@ -8,7 +8,6 @@ from functools import partial
 import numpy as np
 import pandas as pd
 
-from quatspline import quaternion
 from quatspline.findings.candidates import called, direct, rank, smooth, still, usable
 from quatspline.findings.findings import Finding
 from quatspline.findings.needs import Needs, significant
@@ -16,6 +15,7 @@ from quatspline.findings.questions import Table
 from quatspline.findings.quotes import Part, Quote, multiple
 from quatspline.findings.recommendation import take
 from quatspline.instruments.excursion import HOLD
+from quatspline.instruments.own_keyframes import steps
 from quatspline.instruments.trials import Row, records
 from quatspline.keyframes import Keyframes
 from quatspline.motion.summary import GAP
@@ -54,25 +54,18 @@ def cautions(
     second : units of the times in a second
     told : whether that is known, from the file or from its user
     """
-    steps, h = np.degrees(_steps(keyframes)), keyframes.spacings / second
+    angles, h = np.degrees(steps(keyframes)), keyframes.spacings / second
     pair = partial(_pair, keyframes, second)
     said = [
         *([] if told else _clock(keyframes)),
         *_crowded(h, pair),
-        *_gaps(h, steps, pair),
-        *_holds(steps, pair, frame),
-        *_half_turns(steps, pair),
-        *_wide(steps, pair),
+        *_gaps(h, angles, pair),
+        *_holds(angles, pair, frame),
+        *_half_turns(angles, pair),
+        *_wide(angles, pair),
         *_noise(frame),
     ]
     return [Finding(WARNING, ("Warning: ", *parts)) for parts in said]
-
-
-def _steps(keyframes: Keyframes) -> FloatArray:
-    """The angle of each segment, rad."""
-    q = keyframes.quaternions
-    after = np.concatenate([q[1:], q[:1]]) if keyframes.closed else q[1:]
-    return quaternion.distance(q[: len(after)], after)
 
 
 # -- times ----------------------------------------------------------------------------------------
@@ -106,9 +99,9 @@ def _crowded(h: FloatArray, pair: Pair) -> Iterator[list[Part]]:
         ]
 
 
-def _gaps(h: FloatArray, steps: FloatArray, pair: Pair) -> Iterator[list[Part]]:
+def _gaps(h: FloatArray, angles: FloatArray, pair: Pair) -> Iterator[list[Part]]:
     median = float(np.median(h))
-    wide = np.flatnonzero((h > GAP * median) & (np.radians(steps) >= HOLD))  # a hold may last
+    wide = np.flatnonzero((h > GAP * median) & (np.radians(angles) >= HOLD))  # a hold may last
     if wide.size:
         k = int(wide[h[wide].argmax()])
         yield [
@@ -121,14 +114,14 @@ def _gaps(h: FloatArray, steps: FloatArray, pair: Pair) -> Iterator[list[Part]]:
 # -- orientations ---------------------------------------------------------------------------------
 
 
-def _holds(steps: FloatArray, pair: Pair, frame: pd.DataFrame) -> Iterator[list[Part]]:
+def _holds(angles: FloatArray, pair: Pair, frame: pd.DataFrame) -> Iterator[list[Part]]:
     """Equal neighbours, and what schemes do between them."""
-    still = np.flatnonzero(np.radians(steps) < HOLD)
-    if not still.size or still.size == steps.size:
+    still = np.flatnonzero(np.radians(angles) < HOLD)
+    if not still.size or still.size == angles.size:
         return
-    if still.size >= REPEATED * steps.size and steps.size >= ENOUGH:
+    if still.size >= REPEATED * angles.size and angles.size >= ENOUGH:
         yield [
-            f"{still.size} of {steps.size} steps do not turn at all, as where samples are repeated: leave the copies "
+            f"{still.size} of {angles.size} steps do not turn at all, as where samples are repeated: leave the copies "
             "out, or every curve stops and starts at each."
         ]
         return
@@ -156,27 +149,27 @@ def _told(turns: Sequence[tuple[Row, Quote]]) -> list[Part]:
     return parts or ["no scheme measured tells how far curves turn"]
 
 
-def _half_turns(steps: FloatArray, pair: Pair) -> Iterator[list[Part]]:
-    half = np.flatnonzero(steps > 180.0 - AMBIGUOUS)
+def _half_turns(angles: FloatArray, pair: Pair) -> Iterator[list[Part]]:
+    half = np.flatnonzero(angles > 180.0 - AMBIGUOUS)
     if half.size:
-        k = int(half[steps[half].argmax()])
-        left = 180.0 - float(steps[k])
+        k = int(half[angles[half].argmax()])
+        left = 180.0 - float(angles[k])
         told = "exactly half a turn, so that rounding decides which way round it goes"
         if left > ROUNDING:
             more = significant(left)
-            told = f"{steps[k]:.4g} degrees: {more} more, and it goes the other way round"
+            told = f"{angles[k]:.4g} degrees: {more} more, and it goes the other way round"
         yield [
             f"the step between {pair(k)} is {told}{_others(half.size, 'such step')}. A keyframe between them would "
             "settle which way is meant."
         ]
 
 
-def _wide(steps: FloatArray, pair: Pair) -> Iterator[list[Part]]:
-    wide = np.flatnonzero((steps > WIDE) & (steps <= 180.0 - AMBIGUOUS))
+def _wide(angles: FloatArray, pair: Pair) -> Iterator[list[Part]]:
+    wide = np.flatnonzero((angles > WIDE) & (angles <= 180.0 - AMBIGUOUS))
     if wide.size:
-        k = int(wide[steps[wide].argmax()])
+        k = int(wide[angles[wide].argmax()])
         yield [
-            f"the step between {pair(k)} is {significant(float(steps[k]))} degrees"
+            f"the step between {pair(k)} is {significant(float(angles[k]))} degrees"
             f"{_others(wide.size, f'step over {WIDE:g}')}: schemes differ most where steps are that wide, and a "
             "keyframe between them settles more than any choice of scheme."
         ]
