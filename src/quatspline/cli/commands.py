@@ -41,7 +41,7 @@ CLAIMS: tuple[tuple[str, Callable[[Any], Any]], ...] = (
     ("uneven times", lambda s: _yes(s.non_uniform)),
     ("closes", lambda s: _yes(s.closable)),
     ("iterates", lambda s: _yes(s.iterative)),
-    ("from", lambda s: s.peer or "quatspline"),
+    ("from", lambda s: s.peer or f"quatspline{_own(s.name)}"),
     ("title", lambda s: s.title),
 )
 
@@ -132,6 +132,12 @@ def _claims(item: Found) -> list[str]:
 
 def _all_or(keyframes: int | None) -> str:
     return "all" if keyframes is None else str(keyframes)
+
+
+def _own(name: str) -> str:
+    from quatspline.catalogue import ours
+
+    return " (ours)" if ours(name) else ""
 
 
 def _yes(claim: bool) -> str:

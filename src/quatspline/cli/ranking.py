@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from quatspline.catalogue import called
 from quatspline.findings import candidates
-from quatspline.findings.candidates import called, rank
+from quatspline.findings.candidates import rank
 from quatspline.findings.needs import Needs, significant
 from quatspline.findings.questions import Table
 from quatspline.findings.recommendation import smoothing, take

@@ -9,20 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from quatspline.catalogue import PACKAGE, found
+from quatspline.catalogue import found
 from quatspline.comparing import MET
 from quatspline.findings.needs import Needs, reach
 from quatspline.findings.questions import Filter
 from quatspline.instruments.trials import Row, records
 
-PAPERS = "quartic"
-"""The curve of the paper that this project began with: of its proposed schemes the one that is not its own."""
 STILL = 0.01
 """Degrees within which a body that holds stands still."""
 FAIR = 1.05
@@ -49,13 +46,6 @@ def rank(row: Row) -> tuple[Any, ...]:
     claims = (item.scheme.continuity, item.scheme.order) if item and item.scheme else (0, 0)
     torque, jerk = (float(f"{row[name]:.6g}") for name in ("torque", "jerk"))  # not by rounding
     return torque, *(-claim for claim in claims), jerk, reach(row["support"]), str(row["scheme"])
-
-
-def called(name: str) -> str:
-    """A scheme's name, with the word that it is this project's own where it is."""
-    item = found().get(name)
-    ours = item is not None and Path(item.origin).parent == PACKAGE / "proposed" and name != PAPERS
-    return f"{name} (ours)" if ours else name
 
 
 def candidates(needs: Needs) -> tuple[Filter, ...]:

@@ -8,7 +8,8 @@ from functools import partial
 import numpy as np
 import pandas as pd
 
-from quatspline.findings.candidates import called, direct, rank, smooth, still, usable
+from quatspline.catalogue import called
+from quatspline.findings.candidates import direct, rank, smooth, still, usable
 from quatspline.findings.findings import Finding
 from quatspline.findings.needs import Needs, significant
 from quatspline.findings.questions import Table

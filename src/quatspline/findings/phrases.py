@@ -7,8 +7,9 @@ from math import isclose
 
 import numpy as np
 
+from quatspline.catalogue import called
 from quatspline.comparing import MET
-from quatspline.findings.candidates import alike, called, measured
+from quatspline.findings.candidates import alike, measured
 from quatspline.findings.questions import ROUNDED, Table, Words
 from quatspline.findings.quotes import Part, Quote
 from quatspline.instruments.trials import Row, records

@@ -8,15 +8,14 @@ from math import isclose
 import numpy as np
 import pandas as pd
 
+from quatspline.catalogue import PAPERS, called
 from quatspline.comparing import MET
 from quatspline.findings import candidates
 from quatspline.findings.candidates import (
     CANDIDATES,
-    PAPERS,
     ROUNDABOUT,
     STILL,
     alike,
-    called,
     itself,
     measured,
     rank,
