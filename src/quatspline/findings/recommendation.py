@@ -171,6 +171,7 @@ def _beside(needs: Needs) -> tuple[Question, ...]:
             "Passed over for wandering: {best} turns {length:rounded} rad; {more}.",
             (
                 candidates.usable,
+                needs.met,
                 candidates.wandering,
                 lambda rows, taken: rows["torque"] < taken["torque"],
             ),
