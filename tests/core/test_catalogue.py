@@ -366,8 +366,10 @@ def test_scaffold_does_not_overwrite(folder: Path, capsys: pytest.CaptureFixture
 
 
 def test_this_projects_own_schemes_are_marked_and_the_papers_is_not() -> None:
-    proposed = {path.stem.replace("_", "-") for path in (PACKAGE / "proposed").glob("[!_]*.py")}
-    marked = {name for name in found() if called(name) == f"{name} (ours)"}
+    proposed = {
+        path.stem.replace("_", "-") for path in (catalogue.PACKAGE / "proposed").glob("[!_]*.py")
+    }
+    marked = {name for name in catalogue.found() if catalogue.called(name) == f"{name} (ours)"}
     assert marked == proposed - {"quartic"}
-    assert called("slerp") == "slerp"
-    assert called("no-such-scheme") == "no-such-scheme"
+    assert catalogue.called("slerp") == "slerp"
+    assert catalogue.called("no-such-scheme") == "no-such-scheme"
