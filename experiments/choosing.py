@@ -12,10 +12,8 @@ from quatspline.claims.claim import DEPARTS, UNDECIDED
 from quatspline.figures import style
 from quatspline.findings import decisions
 from quatspline.findings.quotes import Reader
-from quatspline.operations import UNSTATED, Per
 from quatspline.quaternion import FloatArray
 from quatspline.runs.experiment import FULL, QUICK, Run
-from quatspline.timing.operations import of_a_keyframe, of_a_sample
 from quatspline.trajectories.sets import COUNT
 
 TITLE = "Which scheme"
@@ -65,10 +63,10 @@ ASKED = {"interpolates": "passes_keys", "takes uneven times": "uneven_times", "c
 """Claims whose measured answers are columns."""
 EASY, SMOOTH = "60 degrees", "smooth"
 COSTS = {
-    "evaluation": (10_000, 1e9, of_a_sample, "nanoseconds_per_{}", "sample"),
-    "set-up": (1000, 1e6, of_a_keyframe, "microseconds_per_{}", "keyframe"),
+    "evaluation": (10_000, 1e9, "nanoseconds_per_{}", "sample"),
+    "set-up": (1000, 1e6, "microseconds_per_{}", "keyframe"),
 }
-"""The largest size of a task, units a second, which operations are its, and columns."""
+"""The largest size of a task, units a second, and columns."""
 COUNTED = {"exps": 1.0, "logs": 1.0, "slerps": 2.0}  # a slerp is one of each
 LEAST_EXCESS = 1e-4
 """Excess of torque below this is drawn there."""
@@ -207,28 +205,15 @@ def _fairness(table: pd.DataFrame) -> pd.DataFrame:
 
 def _cost(table: pd.DataFrame) -> pd.DataFrame:
     parts = []
-    for task, (size, unit, each_takes, seconds, item) in COSTS.items():
+    for task, (size, unit, seconds, item) in COSTS.items():
         rows = table[(table["task"] == task) & (table["size"] <= size)]
         rows = rows[rows["seconds_median"].notna()].sort_values("size").groupby("scheme").last()
         each = rows["seconds_median"] / rows["size"] * unit
         counts = rows[list(COUNTED)].mul(pd.Series(COUNTED)).sum(axis=1, skipna=False)
-        told = [_all_counted(str(name), each_takes) for name in rows.index]
         part = {seconds.format(item): each, f"times_fastest_{item}": each / each.min()}
-        counted = counts.where(np.array(told, dtype=bool))
-        parts.append(pd.DataFrame({**part, f"operations_{item}": counted}))
+        parts.append(pd.DataFrame({**part, f"operations_{item}": counts.where(counts > 0)}))
     short = "run_size" in table and bool(table["run_size"].eq(QUICK).any())
     return pd.concat(parts, axis=1).assign(short_rounds=short)
-
-
-def _all_counted(name: str, each: Callable[[Per], float]) -> bool:
-    """Whether a scheme states what each of some unit takes, and in nothing but the operations added here."""
-    item = found().get(name)
-    if item is None or item.scheme is None:
-        return False
-    own = item.scheme.operations
-    parts = (own, own.iteration or UNSTATED)
-    kinds = {kind for part in parts for kind, per in part.kinds.items() if each(per)}
-    return bool(kinds) and kinds <= set(COUNTED)
 
 
 SOURCES: dict[str, Callable[[pd.DataFrame], pd.DataFrame]] = {

@@ -32,7 +32,7 @@ def automatic(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("degrees", [5.0, 40.0, 150.0])
 def test_engines_agree(scheme, degrees: float, monkeypatch: pytest.MonkeyPatch) -> None:
     n = min(count_of(scheme), 5)
-    repeats = scheme.iterative or scheme.operations.logs.segment > MANY
+    repeats = scheme.iterative or scheme.operations.logs.keyframe > MANY
     for closed in (False, True) if scheme.closable else (False,):
         t = knots_of(scheme, n + closed)
         q = walk(n, degrees, seed=3)

@@ -10,7 +10,6 @@ from quatspline.families.rotation_vector import ROTATION_VECTOR
 from quatspline.fitting.joined_rates import join, steps_and_rates
 from quatspline.kernels.jit import REACH, fit_kernel
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.options import AtMost, Count
 from quatspline.segments import SegmentCurve
 
@@ -44,7 +43,6 @@ class LocalQuinticSpline(SegmentCurve):
     support = 8
     constant_rate = "everywhere"
     family = ROTATION_VECTOR
-    operations = Operations(exps=Per(sample=1), logs=Per(keyframe=3))
 
     def _fit(self, keyframes: Keyframes, *, window: Annotated[Count, AtMost(100)] = 3) -> None:
         self.order = 4 if window > 1 else 2
