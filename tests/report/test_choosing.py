@@ -188,24 +188,26 @@ def test_an_empty_folder_is_told(module, tmp_path: Path) -> None:
         module.derive(Run(quick=True), reader(tmp_path))
 
 
-def test_counts_are_left_out_where_a_scheme_counts_other_things(module, folder: Path) -> None:
-    names = ["quartic", "nlerp", "min-torque", "no such scheme"]
-    counts = {"exps": 1, "logs": 2, "slerps": 3, "seconds_median": 1.0, "size": 100}
+def test_counts_are_left_out_where_a_scheme_does_other_things(module, folder: Path) -> None:
+    """Square roots in a sample, or a set-up that no kernel does."""
+    counts = {
+        ("quartic", "evaluation"): (1, 2, 3),
+        ("quartic", "set-up"): (0, 1, 0),
+        ("nlerp", "evaluation"): (0, 0, 0),
+        ("nlerp", "set-up"): (0, 1, 0),
+        ("min-torque", "evaluation"): (1, 0, 0),
+        ("min-torque", "set-up"): (np.nan, np.nan, np.nan),
+    }
     rows = [
-        {"task": task, "scheme": name, **counts}
-        for name in names
-        for task in ("evaluation", "set-up")
+        {"task": task, "scheme": name, "seconds_median": 1.0, "size": 100}
+        | dict(zip(("exps", "logs", "slerps"), each, strict=True))
+        for (name, task), each in counts.items()
     ]
     Results(folder, force=True).table("cost", pd.DataFrame(rows))
     table = module.derive(Run(quick=True), reader(folder)).set_index("scheme")
-    table = table.loc[table["nanoseconds_per_sample"].notna()]  # none of what is no scheme
-    kept = table[["operations_sample", "operations_keyframe"]].notna()
-    assert kept["operations_sample"].to_dict() == {
-        "quartic": True,
-        "nlerp": False,  # square roots
-        "min-torque": True,
-    }
-    assert not kept.loc["min-torque", "operations_keyframe"]  # states none
+    found = table.loc[["quartic", "nlerp", "min-torque"]]
+    assert found["operations_sample"].fillna(-1).tolist() == [1 + 2 + 2 * 3, -1, 1]
+    assert found["operations_keyframe"].fillna(-1).tolist() == [1, 1, -1]
 
 
 def test_the_worst_failure_is_the_gravest(module, folder: Path) -> None:
