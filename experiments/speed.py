@@ -49,10 +49,10 @@ def measure_cell(run: Run, task: str) -> list[dict[str, object]]:
         return _starts(rounds, run)
     chosen = next(t for t in tasks(run.rng("speed"), run.quick) if t.name == task)
     names = run.schemes or [name for name, item in found().items() if item.scheme is not None]
-    return _rows(chosen, run, names, rounds if chosen.keyframes < MANY else 1)
+    return rows_of(chosen, run, names, rounds if chosen.keyframes < MANY else 1)
 
 
-def _rows(task: Task, run: Run, names: list[str], rounds: int) -> list[dict[str, object]]:
+def rows_of(task: Task, run: Run, names: list[str], rounds: int) -> list[dict[str, object]]:
     rows: list[dict[str, object]] = []
     floors: dict[str, float] = {}
     least = LEAST / 10 if run.quick else LEAST

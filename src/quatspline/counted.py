@@ -105,7 +105,7 @@ def _stopped(cls: Any, keyframes: Any, options: Mapping[str, Any], updates: int)
 
 @cache
 def _of_scheme(cls: Any, options: tuple[tuple[str, Any], ...]) -> Operations:
-    curve = cls(None, _walk(max(SAMPLED, cls.min_keyframes)), **dict(options))
+    curve = cls(None, typical(max(SAMPLED, cls.min_keyframes)), **dict(options))
     parts = [of_a_sample(curve), *_of_a_keyframe(curve)]
     missing = [0, 0 if hasattr(curve, "fit_kernel") else math.nan, 0]
     each = {
@@ -120,7 +120,7 @@ def _of_a_keyframe(curve: Any) -> tuple[Counts, Counts]:
     if not hasattr(curve, "fit_kernel"):
         return {}, {}
     cls, few = type(curve), FEW + (curve.support or 0)
-    fits = [of_updates(cls(None, _walk(n), **curve.options)) for n in (few, few + MORE)]
+    fits = [of_updates(cls(None, typical(n), **curve.options)) for n in (few, few + MORE)]
     added = (difference(more, less) for less, more in zip(*fits, strict=True))
     rest, update = ({kind: n / MORE for kind, n in part.items()} for part in added)
     return rest, update
@@ -131,7 +131,7 @@ def _whole(count: float) -> float:
     return int(count) if float(count).is_integer() else count
 
 
-def _walk(count: int) -> FloatArray:
+def typical(count: int) -> FloatArray:
     """Typical keyframes; longer walks begin as shorter ones do."""
     axes = np.random.default_rng(0).normal(size=(count - 1, 3))
     axes /= np.linalg.norm(axes, axis=1, keepdims=True)

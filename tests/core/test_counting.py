@@ -74,13 +74,13 @@ def test_squad_by_hand() -> None:
 def test_updates_are_counted_apart() -> None:
     """Of Nielson's iteration, 2 slerps and by its residual 3 more; each residual is looked at before, too."""
     assert scheme("nielson").operations.slerps == qs.Per(sample=6, keyframe=3 + 3 + 2, iteration=5)
-    q = counted._walk(6)
+    q = counted.typical(6)
     by_change = scheme("nielson")(None, q, stop="change").operations
     assert by_change.slerps == qs.Per(sample=6, keyframe=3 + 2, iteration=2)
 
 
 def test_options_of_a_curve_are_counted() -> None:
-    q = counted._walk(9)
+    q = counted.typical(9)
     assert scheme("hermite")(None, q, window=3).operations.logs == qs.Per(keyframe=1 + 2 * 2)
     assert scheme("hermite")(None, q, window=5).operations.logs == qs.Per(keyframe=1 + 4 * 2)
 
@@ -103,7 +103,7 @@ def test_primitives_are_there(name: str) -> None:
 @pytest.mark.parametrize("name", ["quartic", "squad", "kim", "local-quintic"])
 @pytest.mark.parametrize("order", [0, 1, 2])
 def test_numbers_that_count_are_the_numbers_that_kernels_make(name: str, order: int) -> None:
-    curve = scheme(name)(None, counted._walk(5))
+    curve = scheme(name)(None, counted.typical(5))
     tally = Tally()
     sheet = counting.sheet_of(curve.segments[0, 1], 0.3, 1.0, tally)
     Copies(tally).of(curve.kernels[order].python)(sheet, counting.TOGETHER)
@@ -113,7 +113,7 @@ def test_numbers_that_count_are_the_numbers_that_kernels_make(name: str, order: 
 
 
 def test_a_fit_on_numbers_that_count_is_the_fit() -> None:
-    curve = scheme("kim")(None, counted._walk(6))
+    curve = scheme("kim")(None, counted.typical(6))
     frames, tally = curve.keyframes, Tally()
     segments = counting.fitted(
         *(curve.fit_kernel, frames.tracks[0], frames.spacings, False, 1.0, curve.parameters),

@@ -57,7 +57,7 @@ def test_shares_are_of_the_floors_of_the_same_run(monkeypatch: pytest.MonkeyPatc
         return [Timed(name, 10, Timing(10 * s, 0.0, 1, 1)) for name, s in seconds.items()]
 
     monkeypatch.setattr(experiment, "measured", measured)
-    rows = experiment._rows(task(), Run(quick=True), [], 1)
+    rows = experiment.rows_of(task(), Run(quick=True), [], 1)
     table = pd.DataFrame(rows).set_index("scheme")
     assert table.loc["quartic", "instructions"] == 106
     assert table.loc["quartic", "nanoseconds_attainable"] == pytest.approx(106 * 0.04)
