@@ -82,14 +82,18 @@ def of_a_fit(curve: Any) -> Counts:
 
 
 def of_updates(curve: Any) -> tuple[Counts, Counts]:
-    """Counts of a compiled curve's solve without its updates, and of each update; nothing where none is made."""
+    """Counts of a compiled curve's solve without its updates, and of each update; nothing where none is made.
+
+    An update takes what the second one does; what others take more or less stays in the rest.
+    """
+    solved = of_a_fit(curve)
     if not curve.iterative:
-        return of_a_fit(curve), {}
+        return solved, {}
     once, twice = (
         of_a_fit(_stopped(type(curve), curve.keyframes, curve.options, n)) for n in (1, 2)
     )
-    update = difference(twice, once)
-    return difference(once, update), update
+    update, made = difference(twice, once), int(curve.solve_report.iterations)
+    return difference(solved, {kind: made * n for kind, n in update.items()}), update
 
 
 def difference(a: Counts, b: Counts) -> Counts:

@@ -79,6 +79,13 @@ def test_updates_are_counted_apart() -> None:
     assert by_change.slerps == qs.Per(sample=6, keyframe=3 + 2, iteration=2)
 
 
+def test_the_cumulative_spline_by_hand() -> None:
+    """Newton's: of every knot three jets an update; before and after, its own again and four factors a segment."""
+    operations = scheme("kim").operations
+    assert operations.exps == qs.Per(sample=3, keyframe=3 + 4, iteration=3)
+    assert operations.logs == qs.Per(keyframe=3, iteration=1)
+
+
 def test_options_of_a_curve_are_counted() -> None:
     q = counted.typical(9)
     assert scheme("hermite")(None, q, window=3).operations.logs == qs.Per(keyframe=1 + 2 * 2)

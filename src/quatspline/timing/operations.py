@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from quatspline.counted import difference, of_a_fit, of_updates
+from quatspline.counted import of_updates
 from quatspline.curve import Curve
 from quatspline.segments import SegmentCurve
 
@@ -39,8 +39,8 @@ def executed(curve: Curve, samples: int, solves: int = 1) -> Executed:
     if not (isinstance(curve, SegmentCurve) and hasattr(curve, "fit_kernel")):
         each = {kind: per.keyframe for kind, per in curve.operations.kinds.items()}
         return Executed(sampled, _kinds(each, solves * curve.keyframes.count))
-    rest = dict(of_updates(curve)[0] if iterations(curve) else of_a_fit(curve))
-    updated = _kinds(difference(of_a_fit(curve), rest), solves)
+    rest, update = of_updates(curve)
+    updated = _kinds(update, solves * iterations(curve))
     return Executed(_sum(sampled, updated), _kinds(rest, solves))
 
 
