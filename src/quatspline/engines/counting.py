@@ -35,6 +35,7 @@ KINDS = {
     "values.exp": "exps",
     "quick.exp": "exps",
     "bspline_rows.put_jet": "exps",
+    "bspline_rows.put_far_jets": "far jets",
     "scalars.sinc": "exps",
     "scalars.sinc_near": "exps",
     "scalars.sincos": "exps",
@@ -43,7 +44,8 @@ KINDS = {
     "scalars.sincos_small": "exps",
 }
 """Functions that are one operation each, by module: a sine with its cosine is what an exponential costs, and the
-point of an arc whose constants are stored is a slerp."""
+point of an arc whose constants are stored is a slerp.  Jets of large angles are made again after those of all
+knots in one loop: the same exponentials, so that they count apart."""
 
 TOGETHER = 8
 """Samples evaluated at once, all the same: loops of rates take no fewer."""
