@@ -37,6 +37,15 @@ CONVERGENCE = pd.DataFrame(
 )
 """A table that is drawn as a map."""
 
+EXCURSION = pd.DataFrame(
+    {
+        "data": "hold 10 : 1",
+        "scheme": ["slerp", "quartic", "kim"],
+        "wander_worst": [0.0, 41.0, 90.0],
+    }
+)
+"""What wanders where a body holds still."""
+
 SCHEMES = ("quartic", "slerp")
 """Schemes of the player in these tests: two kernels to compile, not thirty."""
 
@@ -115,6 +124,7 @@ def results(folder: Path) -> Path:
     for name in ("unheard-of", "figure1"):
         made.figure(name, figure)
     made.table("convergence", CONVERGENCE)
+    made.table("excursion", EXCURSION)
     made.table("figure1", pd.DataFrame({"u": [0.0, 1.0]}))
     made.text("unheard-of.caption.txt", "A <b>line</b>.\n")
     made.replays("reconstruct", replays())

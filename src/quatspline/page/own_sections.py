@@ -26,7 +26,7 @@ OWN: tuple[Section, ...] = (
         ),
     ),
     replace(_BLOCKS["recorded"], tables=(), plots=()),
-    *(_BLOCKS[key] for key in ("player", "log-curves", "rates")),
+    *(_BLOCKS[key] for key in ("motions", "log-curves", "rates")),
 )
 """The sections of a page for somebody's own keyframes."""
 

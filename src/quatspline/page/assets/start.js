@@ -11,6 +11,9 @@
   });
   quatspline.tables = tables;
 
+  const chooser = document.getElementById("chooser");
+  if (chooser) quatspline.chooser = new quatspline.Chooser(chooser, quatspline.data.read("choices"));
+
   document.querySelectorAll("[data-plot]").forEach((place) => new quatspline.TablePlot(place));
   const motions = (quatspline.data.read("scenes") || []).map((packed) => new quatspline.Motion(packed));
   const player = document.getElementById("player");
