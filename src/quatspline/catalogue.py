@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 from quatspline.curve import Curve
 from quatspline.options import nearest
+from quatspline.peers import installed
 from quatspline.system.forking import undivided
 from quatspline.system.loading import load, passing, unfinished
 
@@ -147,7 +148,7 @@ def version(name: str) -> str | None:
     item = found()[name]
     if item.scheme is None:
         return None
-    return importlib.metadata.version(item.scheme.peer or "quatspline")
+    return installed.version(item.scheme.peer or "quatspline")
 
 
 def build(
@@ -239,7 +240,7 @@ def _usable(name: str, origin: str, scheme: type[Curve]) -> Found:
     copyreg.pickle(scheme, _by_name)
     if scheme.peer is not None:
         try:
-            importlib.metadata.version(scheme.peer)
-        except importlib.metadata.PackageNotFoundError:
-            return Found(name, origin, None, f"{scheme.peer} is not installed (extra 'peers')")
+            installed.version(scheme.peer)
+        except installed.NotInstalledError as missing:
+            return Found(name, origin, None, str(missing))
     return Found(name, origin, scheme)
