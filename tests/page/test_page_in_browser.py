@@ -84,6 +84,47 @@ def test_a_series_is_picked_out_and_axes_are_switched(page: Opened) -> None:
     assert page(points) == finest["inner_angle"]
 
 
+def colours(page: Opened, chart: str) -> dict[str, str]:
+    script = f"Object.fromEntries({chart}.data.map((d) => [d.name, d.line.color]))"
+    made: dict[str, str] = page(script)
+    return made
+
+
+def test_eight_lines_are_in_colour_until_others_are_picked(page: Opened) -> None:
+    plot = page.page.locator("#plot-cost-lines")
+    plot.scroll_into_view_if_needed()
+    plot.locator(".main-svg").first.wait_for()
+    chart = "document.querySelector('#plot-cost-lines .chart')"
+    grey = page("quatspline.theme.color('ghost')")
+    first = colours(page, chart)
+    lit = {name for name, color in first.items() if color != grey}
+    assert len(lit) == 8 < len(first)
+    assert {"quartic", "slerp"} <= lit
+    assert first["quartic"] == page("quatspline.plots.seriesColor('quartic')")
+    page(f"{chart}.emit('plotly_legendclick', {{data: {chart}.data, curveNumber: "
+         f"{chart}.data.findIndex((d) => d.name === 'biarc')}})")  # fmt: skip
+    assert colours(page, chart)["biarc"] != grey
+
+
+def test_ratios_are_drawn_as_excess_on_logarithmic_axes(page: Opened) -> None:
+    plot = page.page.locator("#plot-choosing-points")
+    plot.scroll_into_view_if_needed()
+    plot.locator(".main-svg").first.wait_for()
+    point = "document.querySelector('#plot-choosing-points .chart').data.find((d) => d.name === 'kim').y[0]"
+    torque = Results(REFERENCE).read_table("choosing").set_index("scheme").loc["kim", "torque"]
+    assert page(point) == pytest.approx(torque - 1.0, rel=1e-12)
+    plot.get_by_label("log y").uncheck()
+    assert page(point) == torque
+    plot.get_by_label("log y").check()
+
+
+def test_the_player_has_the_colours_of_the_plots(page: Opened) -> None:
+    key = "getComputedStyle(document.querySelector('#player .key')).borderTopColor"
+    rgb = page("quatspline.plots.seriesColor('quartic')").lstrip("#")
+    wanted = ", ".join(str(int(rgb[k : k + 2], 16)) for k in (0, 2, 4))
+    assert page(key) == f"rgb({wanted})"
+
+
 @pytest.mark.parametrize("index", [0, 1])
 def test_the_player_shows_the_pose_of_each_keyframe(page: Opened, index: int) -> None:
     case = list(CASES.values())[index]

@@ -176,12 +176,6 @@ def test_a_scheme_is_one_file_and_stands_in_the_tables(tmp_path):
     assert (table.loc[table["scheme"] == "slerp", "measured_k"] == 0).all()
 
 
-def test_no_two_schemes_share_colour_and_marker():
-    names = pd.read_csv(REFERENCE / "choosing.csv")["scheme"]
-    looks = [style.scheme_style(name) for name in names]
-    assert len({(look["color"], look["marker"]) for look in looks}) == len(looks)
-
-
 def test_walks_are_reproducible_and_have_their_step():
     a, b = (walk(np.random.default_rng(1), 8, 70.0, 3) for _ in range(2))
     np.testing.assert_array_equal(a, b)

@@ -93,7 +93,7 @@ def facts(folder: Folder) -> pd.DataFrame:
     return rows.sort_values("torque", kind="stable")
 
 
-def _iterates(item: Found | None) -> str | None:
+def _iterates(item: Any) -> str | None:
     if not isinstance(item, Found) or item.scheme is None:
         return None
     return YES if item.scheme.iterative else NO

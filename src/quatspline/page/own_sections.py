@@ -22,6 +22,7 @@ OWN: tuple[Section, ...] = (
                 ("torque_over_least", "jerk_over_least", "peak_over_least"),
                 "points",
                 log=(True, True),
+                ratios=("torque_over_least", "jerk_over_least"),
             ),
         ),
     ),

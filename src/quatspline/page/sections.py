@@ -52,6 +52,7 @@ SECTIONS: tuple[Section, ...] = (
                 ("torque", "torque_worst", "order"),
                 "points",
                 log=(True, True),
+                ratios=("torque", "torque_worst"),
             ),
         ),
         block="chooser",
