@@ -296,6 +296,7 @@ def _spread(wanted: FloatArray, gap: float) -> list[float]:
 def caption(table: pd.DataFrame) -> str:
     return (
         "Torque energy over the minimum (median of the committed sets, minus 1; below 1e-4 drawn there) against the "
-        "time of a sample; both are better when less. Hollow: third-party libraries. "
-        "In a square: on the front of torque, order and the two timings; ringed: on that of torque, order and counted operations. Schemes of infinite energy are left out."
+        "time of a sample; both are better when less. Hollow: third-party libraries. In a square: on the front of "
+        "torque, order and the two timings; ringed: on that of torque, order and counted operations. Schemes of "
+        "infinite energy are left out."
     )

@@ -199,7 +199,8 @@ def test_the_canvas_shows_the_body_move(page: Opened) -> None:
 
 def test_less_motion_goes_from_keyframe_to_keyframe(opened: Any) -> None:
     page = opened(reduced_motion="reduce")
-    page.page.click("button[name=play]")
+    page.page.select_option("#player select[name=speed]", "0.25")  # keyframes stand for long
+    page.page.click("#player button[name=play]")
     for k in (1, 2):
         page.page.wait_for_function(f"quatspline.player.pose().keyframe === {k}")
 

@@ -12,7 +12,7 @@ import pytest
 from desk import Desk
 from quatspline import quaternion
 from quatspline.catalogue import load, scheme, schemes, shipped
-from quatspline.figures import motions, style
+from quatspline.figures import motions
 from quatspline.findings.findings import findings, reader
 from quatspline.instruments.blending import blending
 from quatspline.runs.experiment import Run, crossed, files

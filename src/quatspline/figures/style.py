@@ -12,8 +12,18 @@ from matplotlib.figure import Figure
 from quatspline.figures.looks import BLUE, RED, scheme_style
 
 __all__ = [
-    *("BLUE", "COLUMN", "MARKERS", "PAGE", "PALETTE", "RC", "RED"),
-    *("axes", "house", "legend_of", "letters", "scheme_style"),
+    "BLUE",
+    "COLUMN",
+    "MARKERS",
+    "PAGE",
+    "PALETTE",
+    "RC",
+    "RED",
+    "axes",
+    "house",
+    "legend_of",
+    "letters",
+    "scheme_style",
 ]
 
 COLUMN = 3.4
