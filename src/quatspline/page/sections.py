@@ -81,6 +81,14 @@ SECTIONS: tuple[Section, ...] = (
         needs="scenes",
     ),
     Section(
+        "draw",
+        "Draw your own",
+        "Go to a keyframe and drag the body to turn it; drag its number on the timeline to move it in time. Five "
+        "schemes are computed in this page, as the package computes them.",
+        block="draw",
+        needs="scenes",
+    ),
+    Section(
         "log-curves",
         "Log-curves",
         "ln q(t), half the rotation vector, in rad. Drag to turn, scroll to zoom; a click in the legend hides a "

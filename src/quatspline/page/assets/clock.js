@@ -61,7 +61,7 @@ quatspline.Clock = class {
 
   _key(event) {
     const kind = event.target.tagName;
-    const own = kind === "SELECT" || (kind === "INPUT" && event.target.type === "checkbox");
+    const own = kind === "SELECT" || kind === "TEXTAREA" || (kind === "INPUT" && event.target.type === "checkbox");
     if (own || event.altKey || event.ctrlKey || event.metaKey) return;
     if (event.key === " " && kind === "BUTTON") return; /* the button's own */
     const step = this.motion.span / quatspline.Clock.STEPS;

@@ -1,11 +1,12 @@
 /* The player: two schemes on one motion, a timeline, and what all views show at one time. */
 "use strict";
 quatspline.Player = class extends quatspline.Clock {
+  static STAGE = quatspline.Stage;
   static SECONDS = [4, 20]; /* a motion lasts 1.5 s a segment, between these */
 
   constructor(place, motions) {
     super(place, motions);
-    this.stages = [...place.querySelectorAll("canvas.stage")].map((c) => new quatspline.Stage(c, (view) => this._turned(view)));
+    this.stages = [...place.querySelectorAll("canvas.stage")].map((c) => new this.constructor.STAGE(c, (view) => this._turned(view)));
     this.path = new quatspline.PathView(place.querySelector("canvas.path"), () => this.draw());
     this._redraw("a", "b", "layout", "chart", "follow");
     this.choose(0);

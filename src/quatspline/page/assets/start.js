@@ -22,6 +22,12 @@
     quatspline.player = new quatspline.Player(player, motions);
   }
 
+  const drawn = document.getElementById("drawn");
+  if (drawn && motions.length) {
+    const { body, knots, keyframes } = motions[0];
+    quatspline.drawing = new quatspline.Drawing(drawn, body, knots, keyframes);
+  }
+
   const recorded = document.getElementById("replay");
   if (recorded) quatspline.replay = new quatspline.Replay(recorded, quatspline.data.read("replays").map((packed) => new quatspline.Recording(packed)));
 
