@@ -3,7 +3,9 @@
 quatspline.plots = (() => {
   const { element: make, data, theme } = quatspline;
   const looks = data.read("looks") || {};
-  const drawn = [];
+  const PAPER = 680; /* pixels across A4 between margins */
+  const printed = new Set();
+  let printing = false;
 
   const OPTIONS = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d", "sendDataToCloud"] };
   const FAINT = 0.12;
@@ -25,12 +27,12 @@ quatspline.plots = (() => {
   }
 
   function layout(more) {
-    const narrow = window.innerWidth < 640;
+    const narrow = printing || window.innerWidth < 640;
     const legend = narrow ? { orientation: "h", y: -0.28, yanchor: "top" } : { x: 1.02, y: 1 };
     return {
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", hovermode: "closest",
       font: { family: "system-ui, sans-serif", size: narrow ? 12 : 14, color: theme.color("text") },
-      margin: { l: 60, r: 20, t: 16, b: 50 },
+      margin: { l: 60, r: 20, t: 16, b: 50 }, ...(printing ? { width: PAPER } : { width: undefined, autosize: true }),
       hoverlabel: { bgcolor: theme.color("raised"), bordercolor: theme.color("line"), font: { color: theme.color("text") } },
       legend: { ...legend, font: { size: 12 }, itemclick: "toggle", itemdoubleclick: "toggleothers" },
       ...more,
@@ -44,7 +46,7 @@ quatspline.plots = (() => {
   }
 
   function show(place, traces, more) {
-    return Plotly.react(place, traces, layout(more), OPTIONS);
+    return Plotly.react(place, traces, layout(more), { ...OPTIONS, displayModeBar: window.innerWidth < 640 ? false : "hover" });
   }
 
   function chooser(label, options, change) {
@@ -69,10 +71,15 @@ quatspline.plots = (() => {
     }, { rootMargin: "400px" });
     watch.observe(place);
     theme.follow(() => near && draw());
-    drawn.push(place);
+    printed.add(() => { near = near || printing; if (near) draw(); });
   }
 
-  return { axis, show, nothing, chooser, checkbox, lazily, seriesColor, look, FAINT, LEAST_EXCESS, all: drawn };
+  /* Paper shows every plot, as wide as it is. */
+  const drawAll = (on) => () => { printing = on; printed.forEach((draw) => draw()); };
+  window.addEventListener("beforeprint", drawAll(true));
+  window.addEventListener("afterprint", drawAll(false));
+
+  return { axis, show, nothing, chooser, checkbox, lazily, seriesColor, look, FAINT, LEAST_EXCESS };
 })();
 
 quatspline.TablePlot = class {
@@ -84,6 +91,7 @@ quatspline.TablePlot = class {
     this.spec = JSON.parse(place.dataset.plot);
     this.source = data.table(this.spec.table);
     this.chart = make("div", { class: "chart" });
+    this.heading = make("h4");
     const redraw = () => this.draw();
     const pairs = (list) => list.map(({ column, label }) => [column, label]);
     this.x = plots.chooser("Across", pairs(this.spec.x), redraw);
@@ -95,7 +103,7 @@ quatspline.TablePlot = class {
     this.lit = this._lit();
     this.picked = plots.chooser("Pick out", [["", "none"], ...this._values(this.spec.series)], redraw);
     this.logs = ["x", "y"].map((name, i) => plots.checkbox(`log ${name}`, this.spec.log[i], redraw));
-    place.replaceChildren(make("div", { class: "bar" }, ...this._controls()), this.chart);
+    place.replaceChildren(make("div", { class: "bar" }, ...this._controls()), this.heading, this.chart);
     plots.lazily(place, redraw);
   }
 
@@ -163,8 +171,8 @@ quatspline.TablePlot = class {
     /* What goes up stands above the plot: long names would not fit along the axis. */
     const above = map ? `${text(this.z)}; up: ${text(this.y)}` : `${text(this.y)}${excess(this.y, ylog) ? ": excess over 1" : ""}`;
     const annotations = traces.some((trace) => trace.x.length) ? [] : plots.nothing("no data for this choice");
-    const title = { text: above, x: 0, xref: "container", xanchor: "left", y: 1, yref: "container", yanchor: "top", pad: { t: 6 }, font: { size: 14 } };
-    plots.show(this.chart, traces, { ...axes, title, annotations, showlegend: !map, margin: { l: 60, r: 20, t: 40, b: 50 } });
+    this.heading.textContent = above;
+    plots.show(this.chart, traces, { ...axes, annotations, showlegend: !map, margin: { l: 60, r: 20, t: 30, b: 50 } });
     this._legend();
   }
 

@@ -12,7 +12,8 @@ quatspline.View = class {
     this.turn = [20, -60];
     this._drag();
     canvas.addEventListener("keydown", (event) => this._key(event));
-    new ResizeObserver(() => { this.resize(); changed(); }).observe(canvas);
+    const paper = window.matchMedia("print"); /* which shows the picture as it was on the screen */
+    new ResizeObserver(() => { if (!paper.matches) { this.resize(); changed(); } }).observe(canvas);
     this.resize();
   }
 
@@ -126,7 +127,7 @@ quatspline.Stage = class extends quatspline.View {
     this._aim(motion, axes, follow ? movers[0].place : null);
     this.clear();
     this._backdrop(motion, axes, follow);
-    this.pen.drawImage(this.backdrop, 0, 0, this.width, this.height);
+    if (this.canvas.width && this.canvas.height) this.pen.drawImage(this.backdrop, 0, 0, this.width, this.height);
     const posed = movers.map((mover) => ({ ...mover, matrix: geometry.matrix(mover.q) }));
     this._paint(motion, posed, axes, this.pen);
     for (const mover of posed) this._spin(motion, mover, axes);

@@ -53,6 +53,22 @@ quatspline.Strip = class {
     if (list.some(Number.isNaN)) return; /* a scheme without this rate */
     const [from, until] = this.part.map((share) => motion.locate(share * motion.span));
     const points = list.slice(from.i, until.next + 1).map((v, i) => this._at(motion, motion.t[from.i + i], v, top));
-    this.view.stroke(points, color, 2, dash);
+    this.view.stroke(this._thinned(points), color, 2, dash);
+  }
+
+  /* No more than a screen shows: of each column of pixels the first point, the lowest, the highest and the last. */
+  _thinned(points) {
+    if (points.length <= 4 * this.view.width) return points;
+    const kept = [];
+    for (let i = 0; i < points.length;) {
+      let last = i, low = i, high = i;
+      for (; last < points.length && Math.floor(points[last][0]) === Math.floor(points[i][0]); last++) {
+        if (points[last][1] < points[low][1]) low = last;
+        if (points[last][1] > points[high][1]) high = last;
+      }
+      kept.push(...[...new Set([i, Math.min(low, high), Math.max(low, high), last - 1])].map((k) => points[k]));
+      i = last;
+    }
+    return kept;
   }
 };
