@@ -48,7 +48,7 @@ quatspline.Player = class extends quatspline.Clock {
     const { motion, time } = this, { multiply, conjugate, scaled } = quatspline.geometry;
     const q = motion.orientation(curve.name, time), omega = motion.between(curve.omega, time);
     const world = multiply(multiply(q, [0, ...omega]), conjugate(q)).slice(1);
-    const largest = curve.norms.omega.reduce((m, v) => Math.max(m, v), 0) || 1;
+    const largest = curve.fastest ??= curve.norms.omega.reduce((m, v) => Math.max(m, v), 0) || 1;
     return { scheme: curve.name, q, place: motion.between(motion.places, time), color, spin: scaled(world, 1 / largest) };
   }
 
