@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 PACKAGE = Path(__file__).parent
 ENTRY_POINTS = "quatspline.schemes"
 FOLDERS = "QUATSPLINE_BASELINES"
+PAPERS = "quartic"
+"""The curve of the paper that this project began with: of its proposed schemes the one that is not its own."""
 
 
 @dataclass(frozen=True)
@@ -141,6 +143,17 @@ def scheme(name: str) -> type[Curve]:
     if item.scheme is None:
         raise ValueError(f"scheme {name!r} cannot be used: {item.problem}")
     return item.scheme
+
+
+def ours(name: str) -> bool:
+    """Whether a scheme is this project's own."""
+    item = found().get(name)
+    return item is not None and Path(item.origin).parent == PACKAGE / "proposed" and name != PAPERS
+
+
+def called(name: str) -> str:
+    """A scheme's name where schemes are compared: this project's own are marked, since it also judges."""
+    return f"{name} (ours)" if ours(name) else name
 
 
 def version(name: str) -> str | None:

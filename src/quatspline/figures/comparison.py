@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from quatspline.catalogue import called
 from quatspline.curve import Curve
 from quatspline.figures import style
 from quatspline.instruments.derivatives import rates_since
@@ -35,7 +36,7 @@ def bars(table: pd.DataFrame) -> Figure:
         faint = {} if row["continuity"] >= 2 else {"alpha": FAINT}
         ax.plot(row["torque_over_least"], height, **(looks | faint))
     ax.set(xscale="log", xlabel="torque over the least", yticks=range(len(rows)))
-    ax.set_yticklabels(rows["scheme"])
+    ax.set_yticklabels(rows["scheme"].map(called))
     return fig
 
 
@@ -46,7 +47,7 @@ def rates(curves: Mapping[str, Curve], keyframes: Keyframes) -> Figure:
     for name, curve in curves.items():
         looks = style.scheme_style(name) | {"marker": ""}
         for ax, rate in zip(panels[:, 0], rates_since(curve, t), strict=True):
-            ax.plot(t, np.linalg.norm(rate, axis=-1), label=name, **looks)
+            ax.plot(t, np.linalg.norm(rate, axis=-1), label=called(name), **looks)
     for ax, label in zip(
         panels[:, 0], (r"$|\omega|$ (rad/t)", r"$|\alpha|$ (rad/t$^2$)"), strict=True
     ):

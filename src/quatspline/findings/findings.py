@@ -16,7 +16,7 @@ from quatspline.instruments.summary import ALL
 
 @dataclass(frozen=True)
 class Finding:
-    """A sentence: text without a number of its own, and quotes."""
+    """A sentence: text, and a quote for each number of a table; those of keyframes and needs are text."""
 
     topic: str
     parts: tuple[Part, ...]

@@ -43,6 +43,7 @@ EXPRESSIONS: dict[str, Callable[..., Any]] = {
     "percent": lambda value: 100.0 * value,
     "ratio": lambda above, below: above / below,
     "rounded": three_digits,
+    "rounded degrees": lambda value: three_digits(math.degrees(value)),
     "rounded ratio": lambda above, below: three_digits(above / below),
     "reason": without_name,
     "count": lambda *values: len(values),

@@ -141,7 +141,7 @@ def _row(row: Row, told: pd.DataFrame | None, derivations: Derivations) -> dict[
             "local": _local(row, item),
             **{key: _number(row, *where, told) for key, where in NUMBERS.items()},
             "failure": _cell(failure(row), 0.0 if pd.isna(row["worst_failure"]) else 1.0),
-            "closes": _cell(_text(row.get("closes")), {YES: 0.0, NO: 1.0}.get(row.get("closes"))),
+            "closes": _cell(_text(row.get("closes")), {YES: 0.0, NO: 1.0}.get(str(row.get("closes")))),
             "origin": _cell(*_origin(name, item)),
         },
     }

@@ -36,6 +36,7 @@ SCRIPTS = (
 TOPICS = {
     "reproduction": "What reproduces",
     "protocol": "What is protocol",
+    "warning": "Before any advice",
     "recommendation": "Recommendation",
 }
 MAKERS: dict[str, tuple[tuple[str, ...], Callable[[Folder], Any]]] = {
