@@ -7,12 +7,11 @@ segment looks, whether a scheme iterates) from the catalogue.
 from __future__ import annotations
 
 import re
-from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
-from quatspline.catalogue import Found, found
+from quatspline.catalogue import PAPERS, Found, found, ours
 from quatspline.findings.choices import CHOICES, NO, YES, Choice
 from quatspline.findings.decisions import TABLE
 from quatspline.instruments.trials import Row, records
@@ -48,9 +47,6 @@ NUMBERS = {"order": ("order", ".2f"), "torque": ("torque", ".3f")} | {
     "time": ("nanoseconds_per_sample", ".3g")
 }
 """Columns of numbers: where they stand in the table `choosing`, and how they are written."""
-
-PAPERS = "quartic"
-"""The scheme of the paper that this project reproduces."""
 
 WORDS = (
     (r"leaps: (\d+) degrees, (?:uniform)(.*)", r"leaps at steps of \1 degrees, even times\2"),
@@ -141,7 +137,9 @@ def _row(row: Row, told: pd.DataFrame | None, derivations: Derivations) -> dict[
             "local": _local(row, item),
             **{key: _number(row, *where, told) for key, where in NUMBERS.items()},
             "failure": _cell(failure(row), 0.0 if pd.isna(row["worst_failure"]) else 1.0),
-            "closes": _cell(_text(row.get("closes")), {YES: 0.0, NO: 1.0}.get(str(row.get("closes")))),
+            "closes": _cell(
+                _text(row.get("closes")), {YES: 0.0, NO: 1.0}.get(str(row.get("closes")))
+            ),
             "origin": _cell(*_origin(name, item)),
         },
     }
@@ -238,5 +236,4 @@ def _origin(name: str, item: Found | None) -> tuple[str, float]:
         return f"library: {scheme.peer}", 2.0
     if name == PAPERS:
         return "the paper's", 0.5
-    ours = Path(str(item and item.origin)).parent.name == "proposed"
-    return ("ours", 0.0) if ours else ("published", 1.0)
+    return ("ours", 0.0) if ours(name) else ("published", 1.0)
