@@ -29,13 +29,13 @@ EVIL = '</script><script>alert(1)</script><img src=x onerror="alert(2)">&amp;'
 CONVERGENCE = pd.DataFrame(
     [
         {"scheme": name, "method": way, "keyframes": 5, "step_degrees": a, "unevenness": r}
-        | {"share_converged": 1.0 / (a + r), "rate": 0.01**a}
-        for name, way in (("kim", "newton"), ("min-torque", None))
+        | ({} if name == "hermite" else {"share_converged": 1.0 / (a + r), "rate": 0.01**a})
+        for name, way in (("hermite", None), ("kim", "newton"), ("min-torque", None))
         for a in (1, 4)
         for r in (1, 10)
     ]
 )
-"""A table that is drawn as a map."""
+"""A table that is drawn as a map, of a scheme first of which nothing was measured."""
 
 EXCURSION = pd.DataFrame(
     {

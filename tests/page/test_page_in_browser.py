@@ -64,6 +64,9 @@ def test_maps_show_what_the_table_holds(page: Opened) -> None:
     plot.get_by_label("Colour").select_option("rate")
     assert page(drawn + ".z") == pytest.approx([-2, -2, -8, -8])  # coloured by the logarithm
     assert page(drawn + ".text") == ["0.01", "0.01", "1.00e−8", "1.00e−8"]
+    plot.get_by_label("scheme").select_option("hermite")  # it opened where there are data
+    assert page(drawn + ".z") == []
+    assert plot.get_by_text("no data for this choice").count() == 1
 
 
 def test_a_series_is_picked_out_and_axes_are_switched(page: Opened) -> None:
