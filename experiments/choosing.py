@@ -238,11 +238,12 @@ def draw(table: pd.DataFrame) -> Figure:
     shown = shown.assign(excess=(shown["torque"] - 1.0).clip(lower=LEAST_EXCESS))
     for _, row in shown.iterrows():
         looks = style.scheme_style(row["scheme"]) | {"linestyle": ""}
-        face = looks["color"] if row["times_pareto"] == "yes" else "white"
         x, y = row["nanoseconds_per_sample"], row["excess"]
         if row["pareto"] == "yes":
             ax.plot(x, y, "o", ms=10, mfc="none", mec="#999999", mew=0.8)
-        ax.plot(x, y, **looks, ms=5, mfc=face)
+        if row["times_pareto"] == "yes":
+            ax.plot(x, y, "s", ms=12, mfc="none", mec="#999999", mew=0.8)
+        ax.plot(x, y, **looks, ms=5)
     ax.set(xscale="log", yscale="log", xlabel="nanoseconds a sample")
     ax.set_ylabel("median excess of torque energy over the minimum")
     ax.set_xlim(right=ROOM * ax.get_xlim()[1])
@@ -280,6 +281,7 @@ def _spread(wanted: FloatArray, gap: float) -> list[float]:
 def caption(table: pd.DataFrame) -> str:
     return (
         "Torque energy over the minimum (median of the committed sets, minus 1; below 1e-4 drawn there) against the "
-        "time of a sample; both are better when less. Filled: on the front of torque, order and the two timings; "
-        "ringed: on that of torque, order and counted operations. Schemes of infinite energy are left out."
+        "time of a sample; both are better when less. Hollow: third-party libraries. In a square: on the front of "
+        "torque, order and the two timings; ringed: on that of torque, order and counted operations. Schemes of "
+        "infinite energy are left out."
     )

@@ -141,7 +141,7 @@ def draw(table: pd.DataFrame) -> Figure:
         for name, rows in measured[measured["task"] == task].groupby("scheme"):
             peer = catalogue.scheme(str(name)).peer is not None
             looks = style.scheme_style(str(name)) | {"ms": 2.5, "lw": 0.6 if peer else 1.1}
-            looks |= {"markerfacecolor": "white", "mew": 0.6} if peer else {}
+            looks |= {"mew": 0.6} if peer else {}
             ax.plot(rows["size"], rows["seconds_median"] / rows["size"], label=name, **looks)
         ax.set(xscale="log", yscale="log", title=task)
         ax.set(xlabel=f"{unit}s", ylabel=f"seconds a {unit}")

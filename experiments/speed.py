@@ -115,7 +115,6 @@ PANELS = ("evaluate", "one sample", "set-up")
 def draw(table: pd.DataFrame) -> Figure:
     """Nanoseconds an item, in-house schemes in colour, peers hollow, the floors as lines."""
     fig, panels = style.axes(style.PAGE, 6.4, 1, len(PANELS), sharey=True)
-    known = found()
     order = table[(table["task"] == PANELS[0]) & table["seconds_median"].notna()]
     names = [n for n in order.sort_values("nanoseconds_per_item")["scheme"] if n not in FLOORS]
     for ax, task in zip(panels[0], PANELS, strict=True):
@@ -123,10 +122,7 @@ def draw(table: pd.DataFrame) -> Figure:
         for height, name in enumerate(names):
             if name in rows.index:
                 looks = style.scheme_style(name) | {"linestyle": ""}
-                item = known.get(name)
-                peer = item is not None and item.scheme is not None and item.scheme.peer
-                face = {"markerfacecolor": "white"} if peer else {}
-                ax.plot(rows.loc[name, "nanoseconds_per_item"], height, **(looks | face))
+                ax.plot(rows.loc[name, "nanoseconds_per_item"], height, **looks)
         for floor, dash in zip((WRITING, SINCOS), ("-", ":"), strict=True):
             if floor in rows.index:
                 ax.axvline(

@@ -12,7 +12,7 @@ import pytest
 from desk import Desk
 from quatspline import quaternion
 from quatspline.catalogue import load, scheme, schemes, shipped
-from quatspline.figures import motions, style
+from quatspline.figures import motions
 from quatspline.findings.findings import findings, reader
 from quatspline.instruments.blending import blending
 from quatspline.runs.experiment import Run, crossed, files
@@ -174,12 +174,6 @@ def test_a_scheme_is_one_file_and_stands_in_the_tables(tmp_path):
     assert set(table["scheme"]) == {"hold-it", "slerp"}
     assert (table.loc[table["scheme"] == "hold-it", "measured_k"] == -1).all()
     assert (table.loc[table["scheme"] == "slerp", "measured_k"] == 0).all()
-
-
-def test_no_two_schemes_share_colour_and_marker():
-    names = pd.read_csv(REFERENCE / "choosing.csv")["scheme"]
-    looks = [style.scheme_style(name) for name in names]
-    assert len({(look["color"], look["marker"]) for look in looks}) == len(looks)
 
 
 def test_walks_are_reproducible_and_have_their_step():

@@ -19,19 +19,22 @@ if TYPE_CHECKING:
 
 CURVES = 4
 """Schemes drawn over time."""
+FAINT = 0.35
+"""Opacity of what is not C2."""
+
 SAMPLES = 2000
 
 
 def bars(table: pd.DataFrame) -> Figure:
-    """Torque over the least, a scheme a row, C2 filled, others hollow."""
+    """Torque over the least, a scheme a row, those that are not C2 faint."""
     rows = table[table["failure"].isna() & np.isfinite(table["torque_over_least"])]
     rows = rows.sort_values("torque_over_least", ascending=False)
     fig, panels = style.axes(style.COLUMN, 0.6 + 0.17 * max(len(rows), 3))
     ax = panels[0, 0]
     for height, (_, row) in enumerate(rows.iterrows()):
         looks = style.scheme_style(str(row["scheme"])) | {"linestyle": ""}
-        face = {} if row["continuity"] >= 2 else {"markerfacecolor": "white"}
-        ax.plot(row["torque_over_least"], height, **(looks | face))
+        faint = {} if row["continuity"] >= 2 else {"alpha": FAINT}
+        ax.plot(row["torque_over_least"], height, **(looks | faint))
     ax.set(xscale="log", xlabel="torque over the least", yticks=range(len(rows)))
     ax.set_yticklabels(rows["scheme"].map(called))
     return fig
