@@ -1,7 +1,8 @@
 """Quote measurements in the README and in docs: ``python -m tools.readme [--adopt results]``.
 
 Text between ``<!-- begin NAME -->`` and ``<!-- end NAME -->`` is generated from ``results/reference``; --adopt
-first takes the tables of a finished run as the new reference.
+first takes the tables of a finished run as the new reference.  The command that the README shows is run, and its
+picture drawn.
 """
 
 from __future__ import annotations
@@ -9,21 +10,30 @@ from __future__ import annotations
 import argparse
 import re
 import shutil
-from collections.abc import Callable
+import subprocess
+import sys
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from tempfile import TemporaryDirectory
+from textwrap import fill
 
-from quatspline.catalogue import PACKAGE, found
+from quatspline.catalogue import PACKAGE, Found, found
 from quatspline.findings import targets
 from quatspline.findings.findings import findings, lines, reader
+from quatspline.findings.headlines import headlines
 from quatspline.runs.manifest import MANIFEST, read_json
 from quatspline.system.atomic import replacing
+from tools.robot import robot
 
 ROOT = PACKAGE.parents[1]
 REFERENCE = ROOT / "results" / "reference"
 DOCS = ROOT / "docs"
 PICTURES = DOCS / "images"
-QUOTING = (ROOT / "README.md", DOCS / "index.md")
+QUOTING = (ROOT / "README.md", *(DOCS / f"{page}.md" for page in ("findings", "schemes", "speed")))
 """Files with generated blocks."""
+ROBOT = "examples/robot.csv"
+WIDTH = 100
+"""Characters of a line that a terminal's output is folded to."""
 
 TREATED = re.compile(r"^Schemes?: (.+)\.$", re.M)
 """The line by which a page of docs/mathematics says which schemes it derives."""
@@ -43,24 +53,22 @@ def derivations() -> dict[str, Path]:
     return pages
 
 
-def pages_block() -> str:
-    """Which page treats a scheme."""
-    pages, rows = derivations(), ["| scheme | what it is | page |", "| --- | --- | --- |"]
-    for name, item in found().items():
-        if item.scheme is None:
-            continue
-        page = DOCS / "peers.md" if item.scheme.peer else pages.get(name)
-        if page is None:
-            rows.append(f"| `{name}` | {item.scheme.title} | – |")
-            continue
-        title = page.read_text(encoding="utf-8").partition("\n")[0].removeprefix("# ")
-        link = f"[{title}]({page.relative_to(DOCS).as_posix()})"
-        rows.append(f"| `{name}` | {item.scheme.title} | {link} |")
-    return "\n".join(rows)
+def headlines_block() -> str:
+    """The findings in plain words, from the reference tables."""
+    return "\n".join(lines(headlines(reader(REFERENCE))))
+
+
+def compare_block() -> str:
+    """What the command of the README prints, folded; its seconds differ from run to run and are left out."""
+    with TemporaryDirectory() as folder:
+        call = [sys.executable, "-m", "quatspline", "compare", ROBOT, "--out", folder]
+        printed = subprocess.run(call, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    folded = (fill(line, WIDTH, subsequent_indent="  ") for line in printed.splitlines())
+    return "\n".join(["```", *folded, "```"])
 
 
 def schemes_block() -> str:
-    """The table of schemes and what they claim."""
+    """The table of schemes and what they claim, with links from docs."""
     head = [
         "| scheme | what it is | C^k | order | shaped by | from |",
         "| --- | --- | ---: | ---: | --- | --- |",
@@ -72,11 +80,20 @@ def schemes_block() -> str:
             rows.append(f"| `{name}` | n/a: {item.problem} | | | | |")
             continue
         support = "all keyframes" if s.support is None else f"{s.support} keyframes"
-        origin = s.peer or "quatspline"
-        link = pages.get(name)
-        shown = f"[`{name}`]({link.relative_to(ROOT).as_posix()})" if link else f"`{name}`"
-        rows.append(f"| {shown} | {s.title} | {s.continuity} | {s.order} | {support} | {origin} |")
+        link = DOCS / "peers.md" if s.peer else pages.get(name)
+        shown = f"[`{name}`]({link.relative_to(DOCS).as_posix()})" if link else f"`{name}`"
+        rows.append(
+            f"| {shown} | {s.title} | {s.continuity} | {s.order} | {support} | {_origin(item)} |"
+        )
     return "\n".join(head + rows)
+
+
+def _origin(item: Found) -> str:
+    """Whose a scheme is: a library's, this project's own design, or an implementation of a publication here."""
+    if item.scheme is not None and item.scheme.peer:
+        return item.scheme.peer
+    designed = Path(item.origin).parent == PACKAGE / "proposed" and item.name != "quartic"
+    return "quatspline (ours)" if designed else "quatspline"
 
 
 def speed_block() -> str:
@@ -87,16 +104,17 @@ def speed_block() -> str:
 
 
 BLOCKS: dict[str, Callable[[], str]] = {
+    "compare": compare_block,
+    "headlines": headlines_block,
     "findings": findings_block,
     "speed": speed_block,
     "schemes": schemes_block,
-    "pages": pages_block,
 }
 
 
-def renewed(text: str) -> str:
+def renewed(text: str, blocks: Mapping[str, Callable[[], str]] = BLOCKS) -> str:
     """A file's text with every generated block written anew."""
-    for name, block in BLOCKS.items():
+    for name, block in blocks.items():
         begin, end = f"<!-- begin {name} -->\n", f"<!-- end {name} -->"
         if begin in text:
             before, rest = text.split(begin, 1)
@@ -124,6 +142,7 @@ def main() -> None:
     for file in QUOTING:
         with replacing(file) as aside:
             aside.write_text(renewed(file.read_text(encoding="utf-8")), encoding="utf-8")
+    robot(ROOT / ROBOT, PICTURES / "robot.png")
 
 
 if __name__ == "__main__":
