@@ -16,7 +16,9 @@ from mkdocs.plugins import get_plugin_logger
 from mkdocs.structure.files import File, Files
 
 ROOT = Path(__file__).resolve().parents[2]
-REFERENCES, CHANGES = "references.md", "changelog.md"
+REFERENCES = "references.md"
+AT_ROOT = {"CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md"}
+"""Pages that stand at the root of a checkout."""
 SHOWN = ("author", "year", "title", "journal", "booktitle", "volume", "pages", "note")
 """Fields of an entry that its line prints, in this order."""
 
@@ -27,6 +29,7 @@ CITATION = re.compile(CODE + r"|\[(?P<keys>@[\w:]+(?:; *@[\w:]+)*)\]", re.M | re
 LINK = re.compile(
     CODE + r"|\[(?P<text>[^\]]+)\]\((?P<target>\.\./[^)#]+)(?P<anchor>#[^)]*)?\)", re.M | re.S
 )
+FROM_ROOT = re.compile(CODE + r"|\]\((?P<file>(?:docs/)?(?P<page>[\w/-]+\.md))", re.M | re.S)
 FONT = re.compile(r"\\math(bb|bf|sf) ?([A-Za-z])")
 UNIT = re.compile(r"(?<=\d)(?=dd|cc|mm|cm|em|ex|sp|bp|pc|pt|mu)")
 """A number before two letters that the converter takes for a length, as in 2dd."""
@@ -42,8 +45,9 @@ formulas: dict[str, list[str]] = {}
 
 
 def on_files(files: Files, config: Any) -> Files:
-    """Add the changelog, which stands at the root, and the references."""
-    files.append(File.generated(config, CHANGES, abs_src_path=str(ROOT / "CHANGELOG.md")))
+    """Add the pages that stand at the root, and the references."""
+    for source, place in AT_ROOT.items():
+        files.append(File.generated(config, place, abs_src_path=str(ROOT / source)))
     files.append(File.generated(config, REFERENCES, content=_references()))
     return files
 
@@ -52,6 +56,8 @@ def on_page_markdown(text: str, page: Any, **_: Any) -> str:
     """Resolve citations and links out of docs, and take formulas out of Markdown's way."""
     place = page.file.src_uri
     up = "../" * place.count("/")
+    if place in AT_ROOT.values():
+        text = FROM_ROOT.sub(lambda m: m["code"] or f"]({AT_ROOT.get(m['file'], m['page'])}", text)
     text = CITATION.sub(lambda m: m["code"] or _cited(m["keys"], up, place), text)
     text = LINK.sub(lambda m: m["code"] or _linked(m, place), text)
     kept = formulas[place] = []
@@ -107,8 +113,8 @@ def _linked(m: re.Match[str], place: str) -> str:
     target = ((docs / place).parent / m["target"]).resolve()
     if target.is_relative_to(docs):
         return m[0]
-    if target == ROOT / "CHANGELOG.md":
-        return f"[{m['text']}]({'../' * place.count('/')}{CHANGES})"
+    if target.parent == ROOT and (known := AT_ROOT.get(target.name)):
+        return f"[{m['text']}]({'../' * place.count('/')}{known})"
     if not target.exists():
         log.warning("%s links to %s, which does not exist", place, m["target"])
     return m["text"]
