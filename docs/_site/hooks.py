@@ -30,6 +30,15 @@ LINK = re.compile(
     CODE + r"|\[(?P<text>[^\]]+)\]\((?P<target>\.\./[^)#]+)(?P<anchor>#[^)]*)?\)", re.M | re.S
 )
 FROM_ROOT = re.compile(CODE + r"|\]\((?P<file>(?:docs/)?(?P<page>[\w/-]+\.md))", re.M | re.S)
+RELATION = r"=|\\(?:approx|le|ge|equiv|mapsto|leftarrow|Rightarrow)(?![a-z])"
+BREAK = re.compile(
+    r"(?P<open>\\left(?![a-z])|\\begin\{\w+\*?\}|\\?[{(\[])|(?P<close>\\right(?![a-z])|\\end\{\w+\*?\}|\\?[})\]])"
+    rf"|(?P<space>\\q?quad)|(?P<before>{RELATION}|(?<![\^_,])[+-]|\\(?:exp|ln)(?![a-z]))"
+)
+"""What opens and closes a group, and where a formula may be broken."""
+SIGN = re.compile(r"^\s*[+-](?=.*\S)")
+LONE = re.compile(rf"\s*(?:{RELATION}|[+-])?\s*")
+"""What does not stand on a line by itself."""
 FONT = re.compile(r"\\math(bb|bf|sf) ?([A-Za-z])")
 UNIT = re.compile(r"(?<=\d)(?=dd|cc|mm|cm|em|ex|sp|bp|pc|pt|mu)")
 """A number before two letters that the converter takes for a length, as in 2dd."""
@@ -78,18 +87,38 @@ def on_page_content(content: str, page: Any, **_: Any) -> str:
 
 
 def _mathml(source: str, block: bool, place: str) -> str:
-    tags = TAG.findall(source)
+    if not block:
+        return _converted(source, "inline", place)
+    made = "".join(_converted(part, "block", place) for part in parts(TAG.sub("", source)))
+    number = "".join(f'<span class="number" id="{t}">({t})</span>' for t in TAG.findall(source))
+    return f'<span class="equation"><span class="parts">{made}</span>{number}</span>'
+
+
+def _converted(source: str, display: str, place: str) -> str:
     try:
-        made = convert(_dialect(TAG.sub("", source)), display="block" if block else "inline")
+        made = str(convert(_dialect(SIGN.sub(r"{}\g<0>", source)), display=display))
     except Exception as error:  # of many kinds, by what is malformed
         log.warning("%s: %s in the formula %r", place, error, source)
         return html.escape(source)
     if left := UNREAD.findall(made):
         log.warning("%s: %s is left of the formula %r", place, left[0], source)
-    if not block:
-        return str(made)
-    number = "".join(f'<span class="number" id="{t}">({t})</span>' for t in tags)
-    return f'<span class="equation">{made}{number}</span>'
+    return made
+
+
+def parts(source: str) -> list[str]:
+    """A displayed formula in pieces between which a narrow page may break its line.
+
+    Breaks stand after a wide space, before relations, sums and the factors of a product of exponentials, outside
+    braces, brackets and environments.
+    """
+    pieces, depth, start = [], 0, 0
+    for m in BREAK.finditer(source):
+        depth += bool(m["open"]) - bool(m["close"])
+        at = m.end() if m["space"] else m.start()
+        if depth == 0 and (m["space"] or m["before"]) and not LONE.fullmatch(source[start:at]):
+            pieces.append(source[start:at])
+            start = at
+    return [piece for piece in (*pieces, source[start:]) if piece.strip()]
 
 
 def _dialect(source: str) -> str:

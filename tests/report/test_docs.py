@@ -23,10 +23,11 @@ from quatspline.catalogue import FOLDERS, found
 from quatspline.curve import Curve
 from quatspline.engines import engine
 from quatspline.options import declared_by
+from quatspline.page.glossary import column
 from quatspline.runs.experiment import files
 from quatspline.segments import SegmentCurve
 from tools.new_scheme import COMPILED, new_scheme
-from tools.readme import DOCS, QUOTING, ROBOT, ROOT, compare_block, derivations
+from tools.readme import DOCS, QUOTING, REFERENCE, ROBOT, ROOT, compare_block, derivations
 from tools.robot import robot
 from walks import inside, uneven, walk
 
@@ -272,13 +273,27 @@ def test_pages_build_and_load_nothing_from_elsewhere(tmp_path: Path) -> None:
 
 
 @pytest.fixture(scope="module")
-def reference(tmp_path_factory: pytest.TempPathFactory) -> str:
-    """The page of the API as HTML."""
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """All pages as HTML."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)
-        site = tmp_path_factory.mktemp("site")
-        build(DOCS, site)
+        folder = tmp_path_factory.mktemp("site")
+        build(DOCS, folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def reference(site: Path) -> str:
+    """The page of the API."""
     return (site / "api.html").read_text(encoding="utf-8")
+
+
+def test_the_page_of_results_explains_columns(site: Path) -> None:
+    text = (site / "results.html").read_text(encoding="utf-8")
+    explained = text.split("Columns of <code>accuracy.csv</code>")[1].split("</table>")[0]
+    assert f"<td>{column('accuracy', 'inner_angle').meaning}</td>" in explained
+    told = set(re.findall(r"Columns of <code>([\w-]+)\.csv</code>", text))
+    assert told == {file.stem for file in REFERENCE.glob("*.csv")}
 
 
 @pytest.mark.parametrize("module", ["quatspline", "quatspline.motion"])
