@@ -1,4 +1,4 @@
-"""Direct labels: names beside the ends of curves, apart, in the order of the ends so that no leader crosses."""
+"""Direct labels: names beside the ends of curves, in their order so that no leader crosses, and beside points."""
 
 from __future__ import annotations
 
@@ -71,3 +71,48 @@ def label_ends(ax: Any, ends: Sequence[End], size: float = 7.5, lead: float = 12
             arrowprops=leader | {"relpos": (0.0, 0.5)},
             annotation_clip=False,
         )
+
+
+SIDES = (
+    *((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)),
+    *((0.8, 0.9), (-0.8, 0.9), (0.8, -0.9), (-0.8, -0.9)),
+)
+"""Where a label may stand beside its point, the best first."""
+ALIGNED = {-1.0: "right", 0.0: "center", 1.0: "left"}
+
+
+def label_points(ax: Any, points: Sequence[End], size: float = 7.0, away: float = 7.0) -> None:
+    """Write names beside points where they cover no other name and the fewest points; sizes in points.
+
+    Limits and scales of the axes must be final, and the figure laid out.
+    """
+    scale = ax.figure.dpi / POINTS
+    dots = [ax.transData.transform((point.x, point.y)) for point in points]
+    taken: list[Any] = []
+    for point in points:
+        texts = [_beside(ax, point, side, size, away) for side in SIDES]
+        boxes = [text.get_window_extent() for text in texts]
+        covers = [
+            100 * sum(box.overlaps(other) for other in taken)
+            + 100 * (box.x0 < ax.bbox.x0 or box.x1 > ax.bbox.x1)
+            + sum(bool(box.padded(scale).contains(*dot)) for dot in dots)
+            for box in boxes
+        ]
+        best = int(np.argmin(covers))
+        taken.append(boxes[best])
+        for text in (*texts[:best], *texts[best + 1 :]):
+            text.remove()
+
+
+def _beside(ax: Any, point: End, side: tuple[float, float], size: float, away: float) -> Any:
+    return ax.annotate(
+        point.text,
+        (point.x, point.y),
+        (away * side[0], away * side[1]),
+        textcoords="offset points",
+        color=point.color,
+        fontsize=size,
+        ha=ALIGNED[float(np.sign(side[0]))],
+        va="center" if side[1] == 0.0 else "bottom" if side[1] > 0.0 else "top",
+        annotation_clip=False,
+    )
