@@ -1,4 +1,4 @@
-"""One row a scheme, one column a question: derived from the other tables of the folder."""
+"""One row per scheme, one column a question: derived from the other tables of the folder."""
 
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any

@@ -98,7 +98,7 @@ def _orders(cell: Ledger) -> float:
 
 
 def _ahead(*peers: str, scheme: str) -> Target:
-    text = f"`{scheme}` over the fastest of {', '.join(f'`{p}`' for p in peers)}, a sample"
+    text = f"`{scheme}` over the fastest of {', '.join(f'`{p}`' for p in peers)}, time per sample"
     return Target(text, 20.0, _faster("evaluate", scheme, *peers), at_least=True)
 
 
@@ -125,14 +125,14 @@ TARGETS: tuple[Target, ...] = (
         lambda cell: _times_fill(cell, "evaluate", "quartic"),
     ),
     Target(
-        f"the same over `{ROTATION_SPLINE}`",
+        f"`quartic`, a million sorted samples, over `{ROTATION_SPLINE}`",
         50.0,
         _faster("evaluate", "quartic", ROTATION_SPLINE),
         at_least=True,
     ),
     Target("orders 0, 1 and 2 of `quartic` over order 0 alone", 3.5, _orders),
     Target(
-        "`local-quintic` over `quartic`, time a sample",
+        "`local-quintic` over `quartic`, time per sample",
         1.0,
         lambda cell: _each(cell, "evaluate", "local-quintic") / _each(cell, "evaluate", "quartic"),
     ),
@@ -160,7 +160,7 @@ TARGETS: tuple[Target, ...] = (
         unit="us",
     ),
     Target(
-        f"the same over `{ROTATION_SPLINE}`",
+        f"one sample of `quartic`, over `{ROTATION_SPLINE}`",
         20.0,
         _faster("one sample", "quartic", ROTATION_SPLINE),
         at_least=True,
