@@ -14,18 +14,20 @@ override MOTIONS := $(value MOTIONS)
 export NAME TASK MOTIONS
 
 .DEFAULT_GOAL := help
-.PHONY: help reproduce benchmark benchmark-speed motions report test docs lint format new-baseline check-baseline reference lock clean
+.PHONY: help peers-heavy peers-drake peers-node reproduce benchmark benchmark-speed motions report test docs lint format new-baseline check-baseline reference lock clean
 
 help: ## Show the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /|/' | awk -F'|' '{printf "  make %-16s %s\n", $$1, $$2}'
 
-# The environment proper: the package with the third-party schemes, then its kernels compiled once.
+# The environment proper: the package with the light third-party schemes, then its kernels compiled once.
 $(VENV)/run: pyproject.toml requirements.lock
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "quatspline needs Python 3.11 or newer; set PYTHON=")'
 	@$(PYTHON) -m venv $(VENV)
 	@echo "installing into $(VENV) ..."
 	@$(PIP) --editable .
 	@$(PIP) --editable '.[peers]' || echo "some third-party schemes could not be installed: their rows will read n/a"
+	@echo "more third-party schemes, whose rows read n/a without: make peers-heavy (294 MB to download)," \
+	  "peers-drake (58 MB, with Mosek, which is proprietary), peers-node (19 MB, needs Node.js)"
 	@$(RUN) warmup
 	@touch $@
 
@@ -36,6 +38,15 @@ $(VENV)/motions: $(VENV)/run
 $(VENV)/test: $(VENV)/run
 	@$(PIP) --editable '.[peers,motions,test,dev,dask,docs]'
 	@touch $@
+
+peers-heavy: $(VENV)/run ## Add GTSAM, OpenUSD, Pinocchio, Spatial Math and VTK: 294 MB to download, 1.3 GB on disk
+	@$(PIP) --editable '.[peers-heavy]'
+
+peers-drake: $(VENV)/run ## Add Drake, which installs Mosek (proprietary): 58 MB to download, 233 MB on disk
+	@$(PIP) --editable '.[peers-drake]'
+
+peers-node: ## Add three.js, glMatrix and Babylon.js, for which Node.js must be there: 19 MB to download, 93 MB on disk
+	@cd src/quatspline/peers/javascript && npm install --silent --no-audit --no-fund --no-package-lock
 
 reproduce: $(VENV)/run ## The paper in full and every other experiment at quick size, into results/
 	@$(RUN) run
@@ -81,7 +92,7 @@ reference: $(VENV)/run ## Take the tables of the last run as the reference and q
 
 lock: ## Renew requirements.lock from the newest releases
 	@rm -rf $(VENV)-lock && $(PYTHON) -m venv $(VENV)-lock
-	@$(VENV)-lock/bin/pip --quiet --disable-pip-version-check install --editable '.[peers,motions,test,dev,dask,docs]'
+	@$(VENV)-lock/bin/pip --quiet --disable-pip-version-check install --editable '.[peers,peers-heavy,peers-drake,motions,test,dev,dask,docs]'
 	@(echo "# Versions that this release was tested with: constraints for pip, renewed by make lock."; \
 	  $(VENV)-lock/bin/pip --disable-pip-version-check freeze --exclude-editable) > requirements.lock.new
 	@mv requirements.lock.new requirements.lock && rm -rf $(VENV)-lock

@@ -39,6 +39,7 @@ class Template(Curve):
     #   operations = Operations()    counts per sample, keyframe, ..., for tables: quatspline.Operations
     #   practical_keyframes = None   beyond so many, experiments leave it out
     #   rescue = {}                  options that find the curve where the default iteration does not
+    #   rough = {}                   options that try a curve sooner and nearly, where many are tried
     #   batched = False              True: `_fit` and the evaluation take all tracks, see SegmentCurve
     #   peer = None                  the third-party distribution that it wraps
     #   departs = {}                 {"test_name": "why a peer fails that check"}

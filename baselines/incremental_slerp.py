@@ -8,7 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
-from quatspline.families.arcs import ARC, SIZE, set_arc
+from quatspline.families.arcs import ARC, set_arc
 from quatspline.kernels.jit import REACH, fit_kernel
 from quatspline.kernels.values import exp, keyframe, log, norm, unit
 from quatspline.keyframes import Keyframes
@@ -63,10 +63,8 @@ class IncrementalSlerp(SegmentCurve):
             raise ValueError(
                 f"steps={steps}: {points:,} points are too many, at most {MOST:,} are kept"
             )
-        segments = np.empty((tracks.shape[0], h.size * steps, SIZE))
         report = np.zeros((tracks.shape[0], 4))
-        self._begin(h.size * steps, FIT)
-        reach = self._fit_rows(tracks, h, keyframes.closed, segments, report)
+        segments, reach = self._fit_rows(tracks, h, keyframes.closed, report, steps)
         # Every step is a segment of its own.
         knots = np.append(keyframes.inside(np.arange(steps) / steps), keyframes.knots[-1])
         if (np.diff(knots) <= 0.0).any():

@@ -28,9 +28,11 @@ from quatspline.fitting.bspline import (
     increments,
     knot_weights,
     set_phantoms,
+    settle,
     write_segments,
 )
-from quatspline.fitting.bspline_newton import copy, descend, moved, newton, settle
+from quatspline.fitting.bspline_rows import descend, solve
+from quatspline.fitting.newton import copy, moved
 from quatspline.inputs.arrays import at, real_array, refuse_infinite
 from quatspline.kernels.jit import CHANGE, ITERATIONS, REACH, RESIDUAL, compiled, fit_kernel
 from quatspline.kernels.quick import exp, log
@@ -122,30 +124,27 @@ def FIT(q, h, closed, sign, parameters, segments, report):
     """Segments of the interpolating spline; `parameters` as laid out by METHOD ... VELOCITIES."""
     clamped, by_change = parameters[CLAMPED] != 0.0, parameters[BY_CHANGE] != 0.0
     tolerance, limit = parameters[TOLERANCE], int(parameters[LIMIT])
-    w, controls = np.empty((3, h.size + 2)), np.empty((2, 4, h.size + 1))
+    w, d = np.empty((3, h.size + 2)), np.empty((4, h.size + 1))
     if clamped:
         set_ends(q, h, parameters, w)
     problem = pose(q, h, sign if closed else 0.0, clamped, w)
     if parameters[METHOD] != 0.0:
-        report[ITERATIONS], report[CHANGE] = relax(
-            problem, w, controls[0], tolerance, by_change, limit
-        )
+        report[ITERATIONS], report[CHANGE] = relax(problem, w, d, tolerance, by_change, limit)
         report[REACH], report[RESIDUAL] = write_segments(
-            q, h, closed, clamped, sign, controls[0], w, segments
+            q, h, closed, clamped, sign, d, w, segments
         )
         return
-    updates, change, met, side = newton(problem, w, controls, tolerance, by_change, limit)
+    x = w, d, np.empty((9, h.size + 1))
+    updates, change, met = solve(problem, x, tolerance, by_change, limit)
     while True:
-        settle(controls[side], w, met)
+        settle(d, w, met)
         report[REACH], report[RESIDUAL] = write_segments(
-            q, h, closed, clamped, sign, controls[side], w, segments
+            q, h, closed, clamped, sign, d, w, segments
         )
         if not met or by_change or report[RESIDUAL] <= tolerance or updates >= limit:
             break
         # What is written misses by more than equation (2) did: ask (2) for more.
-        more, _, change, met, side = descend(
-            problem, w, controls, 0.1 * tolerance, by_change, limit - updates
-        )
+        more, _, change, met = descend(problem, x, 0.1 * tolerance, by_change, limit - updates)
         updates += more
         if more == 0:
             break

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from quatspline.families.nested import TRIANGLE
 from quatspline.fitting.bezier import set_controls
-from quatspline.fitting.nu_newton import newton_legs
+from quatspline.fitting.nu_rows import newton_legs
 from quatspline.kernels.jit import (
     CHANGE,
     ITERATIONS,
@@ -67,7 +67,7 @@ class Nielson(SegmentCurve):
         "natural", or "stationary": zero phantom spacings, so that the curve starts and stops at rest.
     method
         "jacobi" (as published: all d_i from the last set), "gauss-seidel" (the newest at once), or
-        "newton" (`fitting.nu_newton`): the same curve in 3 to 6 updates, also where the others fail.
+        "newton" (`fitting.nu_rows`): the same curve in 3 to 6 updates, also where the others fail.
     stop, tolerance, max_iterations, on_failure
         As for every iterative scheme.
     """

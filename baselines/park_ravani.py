@@ -92,6 +92,7 @@ class ParkRavani(SegmentCurve):
         (
             "test_order",
             "test_support",
+            "test_lookahead",
             "test_continuity_holds",
             "test_spacing_ratios",
             "test_log_of_a_spin_goes_on",

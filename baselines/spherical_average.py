@@ -18,6 +18,7 @@ from quatspline.fitting.bspline import (
     weight_before,
 )
 from quatspline.fitting.mean_leaps import leaps, share_a_half
+from quatspline.fitting.newton import ARMIJO, CAP, SHORTEST
 from quatspline.kernels.jacobians import inverse_jacobian_matrix
 from quatspline.kernels.jit import (
     CHANGE,
@@ -34,11 +35,6 @@ from quatspline.operations import Operations, Per
 from quatspline.options import Count, OnFailure, Positive, Stop
 from quatspline.segments import SegmentCurve
 
-CAP = 0.8
-"""Largest half angle by which one update may turn a control."""
-ARMIJO = 1e-4
-SHORTEST = 1e-3
-"""A step length below this means that Newton's direction no longer descends."""
 ROUNDING = 1e-28
 """A sum of squared left sides this small has nothing left to descend."""
 

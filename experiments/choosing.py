@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from quatspline.catalogue import found, version
+from quatspline.catalogue import called, found, version
 from quatspline.claims.claim import DEPARTS, UNDECIDED
 from quatspline.figures import direct, named, style
 from quatspline.findings import decisions
@@ -266,7 +266,7 @@ def _drawn(ax: Any, row: pd.Series) -> direct.End | None:
     ax.plot(x, y, **looks)
     if not best and name not in named.NAMED:
         return None
-    return direct.End(x, y, name, looks["color"] if name in named.NAMED else "#555555")
+    return direct.End(x, y, called(name), looks["color"] if name in named.NAMED else "#555555")
 
 
 def caption(table: pd.DataFrame) -> str:

@@ -15,7 +15,7 @@ from quatspline.instruments.trials import Row, attempted
 from quatspline.motion import Motion
 from quatspline.quaternion import FloatArray
 from quatspline.runs.experiment import Run, crossed
-from quatspline.trajectories.clips import OWN, clip, names, tumbling
+from quatspline.trajectories.clips import OWN, clip, middle, names, tumbling
 from quatspline.trajectories.smooth import tumble_rates
 
 TITLE = "Noisy keyframes, with and without smoothing"
@@ -47,11 +47,13 @@ WAYS: dict[str, dict[str, Any]] = {
 }
 """Other ways to choose the weight, and their options: the noise is filled in."""
 TUMBLE = "tumble"
-SIGMAS, SIGMAS_QUICK = (0.0, 0.03, 0.1, 0.3, 1.0, 3.0), (0.0, 0.1, 0.3, 1.0)
+SIGMAS, SIGMAS_QUICK = (0.0, 0.03, 0.1, 0.3, 1.0, 3.0), (0.0, 0.3, 1.0)
 KEPT, KEPT_QUICK = (2, 4, 8), (8,)
 """Of clips; of the tumble those that follow: 401, 101 and 26 keyframes."""
-TUMBLED, TUMBLED_QUICK = (3, 12, 48), (3, 12)
+TUMBLED, TUMBLED_QUICK = (3, 12, 48), (3,)
 DRAWS, DRAWS_QUICK = 20, 3
+FRAMES_QUICK = 180
+"""Of a clip, at quick size."""
 
 
 def cells(run: Run) -> list[dict[str, Any]]:
@@ -80,7 +82,7 @@ def measure_cell(run: Run, clip: str, every: int, noise_degrees: float, scheme: 
 
 
 def _measured(run: Run, clip: str, every: int, noise_degrees: float, scheme: str) -> list[Row]:
-    true, omega = _truth(clip, DRAWS_QUICK if run.quick else DRAWS)
+    true, omega = _truth(clip, run.quick)
     noisy = disturbed(true, noise_degrees, run.rng("denoise", clip, every, noise_degrees))
     options = dict(WAYS.get(scheme, {}))
     if _is_told(scheme):
@@ -89,11 +91,12 @@ def _measured(run: Run, clip: str, every: int, noise_degrees: float, scheme: str
 
 
 @cache
-def _truth(name: str, draws: int) -> tuple[Motion, FloatArray | None]:
+def _truth(name: str, quick: bool) -> tuple[Motion, FloatArray | None]:
     """The true motion and, where it is known, its velocity (n, 3)."""
     if name != TUMBLE:
-        return truth(clip(name)).tracks, None
-    one = tumbling()
+        motion = clip(name)
+        return truth(middle(motion, FRAMES_QUICK) if quick else motion).tracks, None
+    one, draws = tumbling(), DRAWS_QUICK if quick else DRAWS
     q = np.repeat(one.quaternions, draws, axis=1)
     return Motion(one.times, q, tracks=[f"draw {k}" for k in range(draws)]), tumble_rates(
         one.times

@@ -17,7 +17,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from textwrap import fill
 
-from quatspline.catalogue import PACKAGE, Found, found
+from quatspline.catalogue import PACKAGE, found, ours
+from quatspline.curve import Curve
 from quatspline.findings import targets
 from quatspline.findings.findings import findings, lines, reader
 from quatspline.findings.headlines import headlines
@@ -32,7 +33,9 @@ PICTURES = DOCS / "images"
 QUOTING = (ROOT / "README.md", *(DOCS / f"{page}.md" for page in ("findings", "schemes", "speed")))
 """Files with generated blocks."""
 ROBOT = "examples/robot.csv"
-WIDTH = 100
+SHOWN = ("Warning", "Take ")
+TIMES = "ns/sample"
+WIDTH = 108
 """Characters of a line that a terminal's output is folded to."""
 
 TREATED = re.compile(r"^Schemes?: (.+)\.$", re.M)
@@ -59,12 +62,23 @@ def headlines_block() -> str:
 
 
 def compare_block() -> str:
-    """What the command of the README prints, folded; its seconds differ from run to run and are left out."""
+    """What the command of the README prints, folded: warnings, the advice in one sentence, and the table.
+
+    Times, which differ from run to run, are left out.
+    """
     with TemporaryDirectory() as folder:
         call = [sys.executable, "-m", "quatspline", "compare", ROBOT, "--out", folder]
         printed = subprocess.run(call, cwd=ROOT, capture_output=True, text=True, check=True).stdout
-    folded = (fill(line, WIDTH, subsequent_indent="  ") for line in printed.splitlines())
-    return "\n".join(["```", *folded, "```"])
+    above, table = printed.strip().split("\n\n")
+    said = [line for line in above.splitlines() if line.startswith(SHOWN)]
+    shown = [*said, "", *without_times(table.splitlines())]
+    return "\n".join(["```", *(fill(line, WIDTH, subsequent_indent="  ") for line in shown), "```"])
+
+
+def without_times(table: list[str]) -> list[str]:
+    """The rows of a table in text without its last column, nanoseconds; not what is said below it."""
+    width = len(table[0].removesuffix(TIMES).rstrip())
+    return [line[:width] for line in table if len(line) == len(table[0])]
 
 
 def schemes_block() -> str:
@@ -83,17 +97,14 @@ def schemes_block() -> str:
         link = DOCS / "peers.md" if s.peer else pages.get(name)
         shown = f"[`{name}`]({link.relative_to(DOCS).as_posix()})" if link else f"`{name}`"
         rows.append(
-            f"| {shown} | {s.title} | {s.continuity} | {s.order} | {support} | {_origin(item)} |"
+            f"| {shown} | {s.title} | {s.continuity} | {s.order} | {support} | {_origin(name, s)} |"
         )
     return "\n".join(head + rows)
 
 
-def _origin(item: Found) -> str:
+def _origin(name: str, scheme: type[Curve]) -> str:
     """Whose a scheme is: a library's, this project's own design, or an implementation of a publication here."""
-    if item.scheme is not None and item.scheme.peer:
-        return item.scheme.peer
-    designed = Path(item.origin).parent == PACKAGE / "proposed" and item.name != "quartic"
-    return "quatspline (ours)" if designed else "quatspline"
+    return scheme.peer or ("quatspline (ours)" if ours(name) else "quatspline")
 
 
 def speed_block() -> str:

@@ -11,13 +11,13 @@ from matplotlib.figure import Figure
 
 import quatspline as qs
 from quatspline import quaternion
+from quatspline.catalogue import called
 from quatspline.curve import Curve
 from quatspline.figures import direct, style
 from quatspline.inputs.arrays import FloatArray
 from quatspline.motion import Motion
 
 SHOWN = ("slerp", "squad", "local-quintic", "monotone-quintic")
-LABELS = {"local-quintic": "local-quintic (ours)", "monotone-quintic": "monotone-quintic (ours)"}
 SAMPLES = 200
 """Of a segment."""
 REST = 1e-9
@@ -60,7 +60,7 @@ def _drawn(ax: Any, name: str, curve: Curve) -> direct.End:
     looks = style.scheme_style(name) | {"marker": ""}
     t, speed = _speed(curve)
     ax.plot(t, speed, **looks)
-    return direct.End(t[-1], speed[-1], LABELS.get(name, name), looks["color"])
+    return direct.End(t[-1], speed[-1], called(name), looks["color"])
 
 
 def _speed(curve: Curve) -> tuple[FloatArray, FloatArray]:

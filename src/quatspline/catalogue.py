@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 from quatspline.curve import Curve
 from quatspline.options import nearest
+from quatspline.peers import installed
 from quatspline.system.forking import undivided
 from quatspline.system.loading import load, passing, unfinished
 
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
 PACKAGE = Path(__file__).parent
 ENTRY_POINTS = "quatspline.schemes"
 FOLDERS = "QUATSPLINE_BASELINES"
+PAPERS = "quartic"
+"""The curve of the paper that this project began with: of its proposed schemes the one that is not its own."""
 
 
 @dataclass(frozen=True)
@@ -142,12 +145,23 @@ def scheme(name: str) -> type[Curve]:
     return item.scheme
 
 
+def ours(name: str) -> bool:
+    """Whether a scheme is this project's own."""
+    item = found().get(name)
+    return item is not None and Path(item.origin).parent == PACKAGE / "proposed" and name != PAPERS
+
+
+def called(name: str) -> str:
+    """A scheme's name where schemes are compared: this project's own are marked, since it also judges."""
+    return f"{name} (ours)" if ours(name) else name
+
+
 def version(name: str) -> str | None:
     """The version measured: of the peer that a scheme wraps, otherwise of quatspline."""
     item = found()[name]
     if item.scheme is None:
         return None
-    return importlib.metadata.version(item.scheme.peer or "quatspline")
+    return installed.version(item.scheme.peer or "quatspline")
 
 
 def build(
@@ -239,7 +253,7 @@ def _usable(name: str, origin: str, scheme: type[Curve]) -> Found:
     copyreg.pickle(scheme, _by_name)
     if scheme.peer is not None:
         try:
-            importlib.metadata.version(scheme.peer)
-        except importlib.metadata.PackageNotFoundError:
-            return Found(name, origin, None, f"{scheme.peer} is not installed (extra 'peers')")
+            installed.version(scheme.peer)
+        except installed.NotInstalledError as missing:
+            return Found(name, origin, None, str(missing))
     return Found(name, origin, scheme)

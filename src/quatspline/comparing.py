@@ -12,14 +12,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from quatspline import keyframes as kf
-from quatspline import quaternion
 from quatspline.catalogue import scheme, schemes
 from quatspline.curve import Curve
 from quatspline.engines.engine import always_compiled
-from quatspline.instruments.continuity import jumps, measured_continuity, rounding, speeds
-from quatspline.instruments.fairness import fairness
+from quatspline.instruments.own_keyframes import ENERGIES, measured, steps
 from quatspline.instruments.rescue import solved
-from quatspline.instruments.trials import Row, attempted, facts
+from quatspline.instruments.told_noise import told_noise
+from quatspline.instruments.trials import Row, attempted
 from quatspline.keyframes import Keyframes
 from quatspline.options import among, declared_by, nearest
 from quatspline.runs.experiment import Run
@@ -32,20 +31,28 @@ if TYPE_CHECKING:
 TOLERANCE = 1e-9
 """Of iterative schemes, in rad."""
 
-ENERGIES = ("torque", "jerk", "peak")
+MET = 1e-6
+"""Largest angle at a keyframe, in rad, that counts as passing through it."""
+
+DEGREES = ("excursion", "hold_rotation", "peak_rate", "peak_acceleration")
 TITLE = "Comparison on your keyframes"
 NOTE = (
     "continuity is k of C^k as measured on these keyframes; misses the largest angle at a keyframe (rad); torque the "
     "integral of |alpha|^2, jerk that of |alpha'|^2, peak the largest |alpha|, infinite where the velocity jumps, each "
-    "also over the least here; key_speed the least speed at an inner keyframe, peak_speed the largest, over the mean; "
-    "length what the curve turns, keyframes_length the sum of the steps between keyframes (rad). Iterative schemes "
-    "solve to 1e-9 by solver; note says where the published iteration failed and another found the curve. Every "
-    "segment is measured, however many there are; failure says why a scheme was not. Compare seconds within this "
-    "table only."
+    "also over the least of curves that pass through the keyframes; excursion the largest angle off the arcs between "
+    "keyframes, hold_rotation that from the keyframe during a hold (degrees); peak_rate and peak_acceleration the "
+    "largest |omega| and |alpha| in degrees; lookahead how many keyframes after a segment's own two shape it; "
+    "curvature the energy of the path's bending (1/rad), of closed forms alone; noise what the keyframes are told to "
+    "have (degrees an axis, 0 for none); key_speed the least speed at an inner keyframe, peak_speed the largest, over "
+    "the mean; length what the curve turns, keyframes_length the sum of the steps between keyframes (rad). Iterative "
+    "schemes solve to 1e-9 by solver; note says where the published iteration failed and another found the curve. "
+    "Every segment is measured, however many there are; failure says why a scheme was not. Compare seconds within "
+    "this table only."
 )
 FORMATS = {
     "misses": ".1e",
     **{f"{name}_over_least": ".4f" for name in ENERGIES},
+    **dict.fromkeys(DEGREES, ".3g"),
     "seconds_set_up": ".2e",
     "seconds_per_sample": ".2e",
 }
@@ -71,9 +78,11 @@ def compare(
     Returns
     -------
     DataFrame with the columns scheme, continuity, misses, torque, jerk, peak, length (rad), those
-    energies over the least here, keyframes_length (rad, the same in every row), key_speed, peak_speed,
-    support, solver, iterations, rates, version, note, failure and the timings seconds_set_up and
-    seconds_per_sample; sorted by torque, failures last.  ``failure`` says why a scheme was not
+    energies over the least of curves that pass through the keyframes, excursion and hold_rotation
+    (degrees), peak_rate (degrees/t), peak_acceleration (degrees/t^2), curvature (1/rad), keyframes_length
+    (rad) and noise (degrees), the same in every row, key_speed, peak_speed, support, lookahead, solver,
+    iterations, rates, version, note, failure and the timings seconds_set_up and seconds_per_sample;
+    sorted by torque, failures last.  ``failure`` says why a scheme was not
     measured, what is measured in its row being NaN; it is NaN where one was.  ``note`` says where a
     curve was not found by the published iteration but by the options of `Curve.rescue`.
 
@@ -122,18 +131,22 @@ def compared(
         row = attempted(measure)[0] if reason is None else {"failure": reason}
         rows.append({"scheme": name} | row)
     table = pd.DataFrame(rows).reindex(columns=COLUMNS)
-    table["keyframes_length"] = _steps(keyframes)
+    table["keyframes_length"] = float(steps(keyframes).sum())
+    table["noise"] = np.degrees(told_noise(keyframes))
     for name, seconds in seconds_of(keyframes, curves).items():
         table.loc[table["scheme"] == name, list(seconds)] = list(seconds.values())
     for name in ENERGIES:
-        table[f"{name}_over_least"] = _over_least(table[name])
+        table[f"{name}_over_least"] = _over_least(table[name], table["misses"] <= MET)
     table = table.sort_values(["torque", "scheme"], na_position="last", ignore_index=True)
     return table, curves
 
 
-def _over_least(values: pd.Series) -> pd.Series:
-    """Multiples of the least, infinite ones of any; where that is 0, 1 for it and infinity for all else."""
-    least = values.min()
+def _over_least(values: pd.Series, passes: pd.Series) -> pd.Series:
+    """Multiples of the least of those that pass; where that is 0, 1 for none and infinity for all else.
+
+    What passes near keyframes only may need less than any curve through them.
+    """
+    least = values[passes].min() if passes.any() else values.min()
     if np.isinf(least):
         return values
     if least > 0.0:
@@ -145,7 +158,8 @@ COLUMNS = [
     *("scheme", "continuity", "misses"),
     *(f"{name}_over_least" for name in ENERGIES),
     *("key_speed", "peak_speed", *ENERGIES, "length", "keyframes_length"),
-    *("support", "solver", "iterations", "rates", "version"),
+    *(*DEGREES, "curvature", "noise"),
+    *("support", "lookahead", "solver", "iterations", "rates", "version"),
     *("seconds_set_up", "seconds_per_sample", "note", "failure"),
 ]
 
@@ -176,44 +190,5 @@ def _row(
         curve, note = solved(cls, keyframes, **given)
     except ConvergenceError as error:  # in words for a table
         return [{"failure": str(error)}]
-    smooth = measured_continuity(jumps(curve))
-    fair = _above_rounding(curve, fairness(curve))
-    if smooth < 1:  # a jump of the velocity is an infinite torque, which no quadrature sees
-        fair |= dict.fromkeys(ENERGIES, np.inf)
-    pace, report = speeds(curve), curve.solve_report
-    row = {
-        "continuity": smooth,
-        "misses": _misses(curve),
-        **fair,
-        "key_speed": pace["least_key_speed"],
-        "peak_speed": pace["peak_speed"],
-        "support": "all" if curve.support is None else str(curve.support),
-        "iterations": report.iterations if report else None,
-        "solver": report.method if report else None,
-        "note": note,
-        **facts(curve),
-    }
     curves[name] = curve  # of what failed, no seconds
-    return [row]
-
-
-def _above_rounding(curve: Curve, fair: Row) -> Row:
-    """Energies of which nothing but rounding is left, at rest or at a constant rate, are zero."""
-    h = curve.keyframes.spacings
-    alpha, slope = (rounding(curve, order) for order in (2, 3))
-    floors = (alpha**2 * (h**-3).sum(), slope**2 * (h**-5).sum(), alpha * (h**-2).max())
-    zero = [name for name, floor in zip(ENERGIES, floors, strict=True) if fair[name] <= floor]
-    return fair | dict.fromkeys(zero, 0.0)
-
-
-def _steps(keyframes: Keyframes) -> float:
-    """The sum of the angles between neighbouring keyframes, rad: what a curve turns that wanders nowhere."""
-    q = keyframes.quaternions
-    after = np.concatenate([q[1:], q[:1]]) if keyframes.closed else q[1:]
-    return float(quaternion.distance(q[: len(after)], after).sum())
-
-
-def _misses(curve: Curve) -> float:
-    """The largest angle at a keyframe, rad."""
-    at = curve.times[: curve.keyframes.count]
-    return float(quaternion.distance(curve(at), curve.keyframes.quaternions).max())
+    return [measured(curve) | {"note": note}]

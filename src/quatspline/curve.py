@@ -217,6 +217,14 @@ class Curve(abc.ABC):
         return dict(self._options)
 
     @property
+    def engine(self) -> Literal["python", "compiled"] | None:
+        """What evaluates its orientations, where the scheme is written in kernels: "python" or "compiled".
+
+        None where it is not, but has code of its own, in numpy or a library's.
+        """
+        return None
+
+    @property
     def numeric_orders(self) -> tuple[int, ...]:
         """Orders whose values come from the shared numerical fallback."""
         cls = type(self)
@@ -416,6 +424,13 @@ class Curve(abc.ABC):
         out = np.empty((t.size, self._keyframes.tracks.shape[0], 3 if order else 4))
         self._evaluate(np.array(t, dtype=float), 0.0, np.inf, order, out.reshape(-1), 1)
         return out
+
+    def orientations(self, t: FloatArray) -> FloatArray:
+        """Orientations (m, 4) of a single track at times since the first keyframe (m,).
+
+        Within the domain, neither checked nor wrapped: for instruments, which ask often and near one another.
+        """
+        return self._orientation(t)
 
     def _checked_order(self, order: Any) -> int:
         try:

@@ -9,6 +9,7 @@ outside the domain, and hands blocks of samples to the kernels, component first.
 
 from __future__ import annotations
 
+import math
 import threading
 from typing import Any, Literal
 
@@ -18,7 +19,16 @@ from quatspline.curve import Curve
 from quatspline.engines import engine, plain
 from quatspline.inputs.arrays import BoolArray, FloatArray
 from quatspline.kernels.family import Family
-from quatspline.kernels.jit import CHANGE, ITERATIONS, REACH, RESIDUAL, UNREPORTED, Kernel
+from quatspline.kernels.jit import (
+    CHANGE,
+    ITERATIONS,
+    OVERWRITTEN,
+    REACH,
+    RESIDUAL,
+    ROWS,
+    UNREPORTED,
+    Kernel,
+)
 from quatspline.kernels.scalars import NEAR
 from quatspline.keyframes import segment_of
 from quatspline.solving import WRONG_FIXED_POINT, SolveReport
@@ -45,15 +55,18 @@ class SegmentCurve(Curve):
     _waiting: BoolArray | None = None
     """While a long curve is not wholly fitted: which chunks wait."""
     _fitting: threading.Lock
-    _work = 0.0
-    """What was done for it in plain Python, in samples; machine code from `engine.REPAYS` on."""
+    _refused = False
+    """Whether plain Python refused to do what machine code does, such as dividing by zero."""
     _sample: Any = None
     """The compiled driver, once this curve is compiled."""
 
     @property
     def engine(self) -> Literal["python", "compiled"]:
-        """What evaluates it: plain Python at first, machine code once that repays compiling."""
-        return "compiled" if self._is_compiled else "python"
+        """What evaluates its orientations: plain Python at first, machine code once that repays compiling.
+
+        Rates have kernels of their own, each of which is compiled once its work repays it.
+        """
+        return "compiled" if self._compiled[0] or self._repays(0, 0) else "python"
 
     def _solve(
         self, kernel: Kernel, parameters: FloatArray | None = None, *, whole: bool = False
@@ -65,38 +78,46 @@ class SegmentCurve(Curve):
         """
         frames = self._keyframes
         self.fit_kernel = kernel
-        self._begin(frames.spacings.size * (ITERATED if self.iterative else FITTED), kernel)
         self.parameters = (
             np.zeros(1) if parameters is None else np.ascontiguousarray(parameters, float)
         )
         tracks, count = frames.tracks.shape[0], frames.spacings.shape[0]
-        segments = np.empty((tracks, count, self.family.constants))
         report = np.zeros((tracks, 4))
         if self.support is not None and count > LAZY and not (whole or self.iterative):
             self._waiting = np.ones(-(-count // CHUNK), bool)
             self._fitting = threading.Lock()
             # Kernels for any angle, now and later: a value must not depend on what was called before.
-            self._set_segments(segments, np.inf)
+            self._set_segments(np.empty((tracks, count, self.family.constants)), np.inf)
         else:
-            self._set_segments(
-                segments,
-                self._fit_rows(frames.tracks, frames.spacings, frames.closed, segments, report),
-            )
+            fitted = self._fit_rows(frames.tracks, frames.spacings, frames.closed, report)
+            self._set_segments(*fitted)
         return report
 
     def _fit_rows(
-        self,
-        tracks: FloatArray,
-        h: FloatArray,
-        closed: bool,
-        segments: FloatArray,
-        report: FloatArray,
-    ) -> float:
-        given = self._keyframes.signs, self.parameters, segments, report
-        reach: float = self._run("fit_tracks", self.fit_kernel, tracks, h, closed, *given)
+        self, tracks: FloatArray, h: FloatArray, closed: bool, report: FloatArray, pieces: int = 1
+    ) -> tuple[FloatArray, float]:
+        """Constants (K, pieces of intervals, constants) by the fit kernel, and the largest reach.
+
+        Raises
+        ------
+        TypeError
+            Where the kernel reports no reach, or writes beyond the constants of its family.
+        """
+        shape = len(tracks), h.size * pieces, self.family.constants
+        room = np.empty(math.prod(shape) + ROWS)
+        segments, beyond = room[:-ROWS].reshape(shape), room[-ROWS:]
+        work = len(tracks) * h.size * pieces * (ITERATED if self.iterative else FITTED)
+        self.fit_kernel.work += work
+        given = tracks, h, closed, self._keyframes.signs, self.parameters, segments, report, beyond
+        compiled = self._refused or engine.compiles(0.0, self.fit_kernel)
+        reach: float = self._run("fit_tracks", compiled, self.fit_kernel, *given)
+        if reach == OVERWRITTEN:
+            raise TypeError(
+                f"{self.name}: its fit kernel writes beyond the {shape[-1]} constants of its family"
+            )
         if (report[:, REACH] == UNREPORTED).any():  # of one track, the largest reach would hide it
             raise TypeError(f"{self.name}: its fit kernel does not write report[REACH]")
-        return reach
+        return segments, reach
 
     def _fit_window(self, low: float, high: float) -> None:
         """Fit the chunks of segments from low to high where that was not done before.
@@ -127,8 +148,7 @@ class SegmentCurve(Curve):
         tracks *= (frames.signs[:, None] ** (index // n % 2))[..., None]  # keyframes of other turns
         tracks.setflags(write=False)  # as those of the whole: one compiled signature serves both
         h = frames.spacings[index[:-1] % n]
-        rows = np.empty((tracks.shape[0], h.size, self.family.constants))
-        self._fit_rows(tracks, h, False, rows, np.zeros((tracks.shape[0], 4)))
+        rows, _ = self._fit_rows(tracks, h, False, np.zeros((tracks.shape[0], 4)))
         before = start - index[0]
         self.segments[:, start:stop] = rows[:, before : before + stop - start]
 
@@ -146,7 +166,9 @@ class SegmentCurve(Curve):
         if segments.shape != shape:  # kernels read by address: a wrong shape would read elsewhere
             raise ValueError(f"segments has shape {segments.shape}: expected {shape}")
         self.kernels = self.family.near if reach <= NEAR else self.family.far
-        self._begin(0.0, self.kernels[0])
+        # By order: that the kernel of one is there says nothing of what compiling another costs.
+        self._compiled: list[bool | None] = [self._refused or None] * len(self.kernels)
+        self._work = [0.0] * len(self.kernels)
         self._sample = None  # it was told where other constants are
 
     def _report(
@@ -188,27 +210,31 @@ class SegmentCurve(Curve):
         """What the constants miss at keyframes, (K,) in rad."""
         frames = self._keyframes
         curve = self.segment_knots, self.segments, frames.tracks, frames.knots, frames.signs
-        misses: FloatArray = self._run("largest_misses", self.kernels[0], *curve)
+        compiled = self._compiled[0] or self._repays(0, 2 * frames.spacings.size)
+        misses: FloatArray = self._run("largest_misses", compiled, self.kernels[0], *curve)
         return misses
 
     # -- engines --------------------------------------------------------------------------------
 
-    _is_compiled = False
+    def _repays(self, order: int, samples: int) -> bool:
+        """Count samples of an order, and whether its kernel takes them: it is there, or they repay it.
 
-    def _begin(self, work: float, *kernels: Kernel) -> None:
-        """Count work on every track; machine code does it where that repays, or where it is there."""
-        work *= self._keyframes.tracks.shape[0]
-        self._work += work
-        for kernel in kernels:
-            kernel.work += work
-        self._is_compiled = self._is_compiled or engine.compiles(self._work, *kernels)
+        A curve keeps to what it began with, plain Python until its own work repays compiling.
+        """
+        kernel, work = self.kernels[order], samples * self.segments.shape[0]
+        self._work[order] += work
+        kernel.work += work
+        begins = self._compiled[order] is None
+        compiled = engine.compiles(self._work[order], kernel if begins else None)
+        self._compiled[order] = compiled
+        return compiled
 
-    def _run(self, name: str, *arguments: Any) -> Any:
+    def _run(self, name: str, compiled: bool, *arguments: Any) -> Any:
         """A function of `plain`, or of `native`."""
-        if not self._is_compiled:
+        if not compiled:
             with engine.unfit_suppressed():
                 return getattr(plain, name)(*arguments)
-            self._is_compiled = True
+            self._refused = True
         return getattr(engine.native(), name)(*arguments)
 
     def _evaluate(
@@ -223,13 +249,10 @@ class SegmentCurve(Curve):
         if self._waiting is not None and t.size:
             self._fit_window(t.min() - origin, t.max() - origin)
         kernel = self.kernels[order]
-        if not self._is_compiled:
-            self._begin(t.size)
-            kernel.work += t.size * self.segments.shape[0]
-            if not self._is_compiled:
-                with engine.unfit_suppressed():
-                    return self._evaluate_plainly(t - origin, slack, order, out)
-                self._is_compiled = True
+        if not self._compiled[order] and not self._repays(order, t.size):
+            with engine.unfit_suppressed():
+                return self._evaluate_plainly(t - origin, slack, order, out)
+            self._compiled[order] = True
         sample = self._sample or self._compile()
         given = kernel.address or engine.address(kernel), order, self.described, origin, slack
         if threads == 1 or t.size < 2 * THREAD_MINIMUM:

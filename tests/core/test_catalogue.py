@@ -363,3 +363,13 @@ def test_scaffold_does_not_overwrite(folder: Path, capsys: pytest.CaptureFixture
     assert (folder / "precious.py").read_text() == "mine"
     assert new_scheme.main(["other", str(folder / "nowhere")]) == 2
     assert capsys.readouterr().err.count("\n") == 2
+
+
+def test_this_projects_own_schemes_are_marked_and_the_papers_is_not() -> None:
+    proposed = {
+        path.stem.replace("_", "-") for path in (catalogue.PACKAGE / "proposed").glob("[!_]*.py")
+    }
+    marked = {name for name in catalogue.found() if catalogue.called(name) == f"{name} (ours)"}
+    assert marked == proposed - {"quartic"}
+    assert catalogue.called("slerp") == "slerp"
+    assert catalogue.called("no-such-scheme") == "no-such-scheme"

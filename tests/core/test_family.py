@@ -15,8 +15,8 @@ from quatspline.families.arcs import SIZE as ARC_SIZE
 from quatspline.families.circles import biarc, biarc_jet, blend, blend_jet
 from quatspline.families.means import point as mean
 from quatspline.families.nested import squad, squad_jet, triangle, triangle_jet
-from quatspline.kernels.family import called, family
-from quatspline.kernels.jit import CONSTANTS, REACH, ROWS, fit_kernel, inlined
+from quatspline.kernels.family import family
+from quatspline.kernels.jit import CONSTANTS, REACH, ROWS, called, fit_kernel, inlined
 from quatspline.kernels.scalars import sincos
 from quatspline.kernels.values import Vec, keyframe, vec
 from quatspline.segments import SegmentCurve
@@ -62,6 +62,35 @@ def test_a_fit_that_reports_no_reach_is_refused(either: str, signs: tuple[float,
     assert Silent(None, q).engine == either
     with pytest.raises(TypeError, match=r"silent: .* does not write report\[REACH\]"):
         Silent(None, np.stack([sign * q for sign in signs], axis=1))
+
+
+@fit_kernel
+def LONG(q, h, closed, sign, parameters, segments, report):
+    """One number more than the family has constants."""
+    for i in range(h.size):
+        c = segments[i]
+        set_arc(c, 0, keyframe(q, i, sign), keyframe(q, i + 1, sign))
+        c[ARC_SIZE] = 1.0
+    report[REACH] = 0.0
+
+
+class Long(Silent):
+    name = "long"
+
+    def _fit(self, keyframes: Any) -> None:
+        self._solve(LONG)
+
+
+@pytest.mark.parametrize("tracks", [1, 3])
+def test_a_fit_that_writes_beyond_its_constants_is_refused(either: str, tracks: int) -> None:
+    q = np.stack([walk(4, 50.0)] * tracks, axis=1)
+    told = {
+        "compiled": (TypeError, f"long: .* beyond the {ARC_SIZE} constants"),
+        "python": (IndexError, "9"),
+    }
+    error, message = told[either]
+    with pytest.raises(error, match=message):
+        Long(None, q)
 
 
 def test_a_family_too_big_for_its_sheet_is_refused() -> None:

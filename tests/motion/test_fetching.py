@@ -159,13 +159,13 @@ def test_a_server_that_does_not_answer_is_asked_once(
         bound.bind(("127.0.0.1", 0))
         host = f"127.0.0.1:{bound.getsockname()[1]}"
         tried = []
-        fetch = fetching._fetch
+        fetch = fetching.download
 
         def counted(path: Path, address: str, remote: fetching.Remote) -> None:
             tried.append(address)
             fetch(path, address, remote)
 
-        monkeypatch.setattr(fetching, "_fetch", counted)
+        monkeypatch.setattr(fetching, "download", counted)
         assert run(tmp_path / "m", "--from", f"http://{host}") == 1
     assert len(tried) == 1
     (line,) = capsys.readouterr().err.splitlines()

@@ -86,7 +86,7 @@ def test_bad_input_is_refused() -> None:
 
 def test_every_number_of_the_recommendation_is_a_cell(table: pd.DataFrame) -> None:
     found = recommendation(table)
-    assert found[0].text.startswith("Take local-quintic: ")
+    assert found[0].text.startswith("Take local-quintic (ours): ")
     quotes = [part for finding in found for part in finding.parts if isinstance(part, Quote)]
     assert quotes
     for quote in quotes:
@@ -125,7 +125,7 @@ def test_a_failure_that_readers_know_is_said(
         out = tmp_path / f"out{len(schemes)}"
         arguments = ["compare", "--schemes", *schemes, str(keyframes), "--out", str(out)]
         assert commands.main(arguments) == 0
-        told = capsys.readouterr().out.splitlines()
+        told = capsys.readouterr().out.split("\n\n")[0].splitlines()
         head = "Take kim: " if "kim" in schemes else "No recommendation: nothing was measured."
         assert told[0].startswith(head)
         assert told[-1] == (
@@ -148,7 +148,7 @@ def test_command_writes_table_figures_advice_and_page(
     write(keyframes, motion)
     status = commands.main(["compare", str(keyframes), "--schemes", *NAMES, "--out", str(out)])
     assert status == 0
-    assert capsys.readouterr().out.startswith("Take ")
+    assert "\nTake local-quintic (ours): " in capsys.readouterr().out
     names = {path.name for path in out.iterdir()}
     assert {"compare.csv", "compare.md", "compare.svg", "rates.svg", "recommendation.md"} <= names
     assert {"report.html", "manifest.json"} <= names
@@ -215,7 +215,10 @@ def test_a_curve_that_turns_round_and_round_is_said_to() -> None:
     keyframes = [[1, 0, 0, 0], [1, 0, 0, 0], [0.8, 0.6, 0, 0], [0.8, 0.6, 0, 0]]
     table = qs.compare([0, 10, 10.02, 20], keyframes, ["quartic"])
     lines = advice(table)
-    assert lines[1:] == ["It turns 272 rad where the keyframes need 1.29."]
+    assert lines[1:] == [
+        "It turns 272 rad where the keyframes need 1.29.",
+        "While the keyframes stand still, it turns up to 358 degrees away; no candidate stands still.",
+    ]
 
 
 def test_of_attitudes_with_dwells_between_the_curve_that_wanders_least_is_taken() -> None:
@@ -293,4 +296,50 @@ def test_the_edge_pack_never_shows_a_traceback(
         return
     table = pd.read_csv(tmp_path / "out" / "compare.csv")
     assert table.set_index("scheme")["failure"].isna()["local-quintic"], told.out
-    assert told.out.startswith(("Take ", "No recommendation")), told.out
+    first = next(line for line in told.out.splitlines() if not line.startswith("Warning: "))
+    assert first.startswith(("Take ", "No recommendation")), told.out
+
+
+HINGE = "t_ms,qw,qx,qy,qz\n0,1,0,0,0\n1000,0.8,0.6,0,0\n1500,0.8,0.6,0,0\n2200,0.6,0.8,0,0\n"
+
+
+def test_the_command_takes_needs_in_seconds(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    keyframes = tmp_path / "hinge.csv"
+    keyframes.write_text(HINGE.replace("t_ms", "t"))
+    names = ["slerp", "local-quintic", "monotone-quintic"]
+    call = ["compare", str(keyframes), "--schemes", *names, "--force", "--time-unit", "ms"]
+    call += ["--max-excursion", "0.5"]
+    for limit, taken in (("200", "Take monotone-quintic (ours): "), ("60", "No scheme measured")):
+        out = tmp_path / limit
+        assert commands.main([*call, "--max-rate", limit, "--out", str(out)]) == 0
+        lines = capsys.readouterr().out.splitlines()
+        assert lines[0].startswith("Warning: keyframes 1 and 2 (1 s and 1.5 s after the first)")
+        assert lines[1].startswith(taken)
+        page = (out / "report.html").read_text(encoding="utf-8")
+        assert "while they stand still" in page
+        assert lines[-1] not in page  # a line of the table, which the page has whole
+    table = pd.read_csv(tmp_path / "200" / "compare.csv").set_index("scheme")
+    peak = 1000 * table["peak_rate"].to_dict()["slerp"]  # of degrees a millisecond
+    assert peak == pytest.approx(2 * np.degrees(np.arccos(0.8)))
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        ["--smooth", "3"],
+        ["--causal", "-1"],
+        ["--max-rate", "0"],
+        ["--max-excursion", "nan"],
+        ["--time-unit", "fortnight"],
+        ["--time-unit", "1/0 s"],
+    ],
+)
+def test_bad_needs_are_refused_in_a_line(
+    given: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert commands.main(["compare", "keys.csv", *given]) == 2
+    told = capsys.readouterr().err.strip().splitlines()
+    assert len(told) == 1
+    assert given[0] in told[0]

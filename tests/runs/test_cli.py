@@ -46,6 +46,27 @@ def test_help_and_version(desk: Desk) -> None:
     assert {"list", "run", "sample"} <= set(shown.stdout.split())
 
 
+def test_help_of_run_lists_experiments(desk: Desk) -> None:
+    desk.experiment("trial")
+    path = desk.folder / "experiments" / "trial.py"
+    path.write_text('"""What a trial shows.\n\nMore of it."""\n' + path.read_text())
+    (desk.folder / "experiments" / "broken.py").write_text("measure = (")
+    shown = desk("run", "--help").stdout.splitlines()
+    listed = [line.split(maxsplit=1) for line in shown[shown.index("experiments:") + 1 :]]
+    assert ["trial", "What a trial shows."] in listed
+    assert ["broken"] in listed
+    assert any(words[0] == "table1" and len(words) == 2 for words in listed)
+
+
+def test_a_run_ends_with_a_line_on_each_table(desk: Desk) -> None:
+    desk.experiment("trial", figure=False)
+    desk.experiment("failing", before="1 / 0", figure=False)
+    done = desk("run", "trial", "failing", "--schemes", "slerp", "--out", "out")
+    assert done.stdout == "trial: 1 row, 1 scheme.\n"
+    done = desk("run", "figure1", "--out", "paper")
+    assert done.stdout.startswith("figure1: ")
+
+
 def test_help_imports_nothing_slow() -> None:
     python(
         "import sys; from quatspline.cli.commands import main; assert main(['--help']) == 0;"

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from desk import Desk
-from processes import STUCK, command, environment
+from processes import STUCK, command, environment, python
 
 HELD = """
 import os, time
@@ -109,3 +109,19 @@ def test_a_cell_that_is_deaf_alone_is_cut_off(desk: Desk) -> None:
     status, said, _ = stopped(desk, signal.SIGTERM, 1, group=False)
     assert status == 128 + signal.SIGTERM
     assert said.rstrip().endswith(LINE)
+
+
+def test_workers_of_a_pool_end() -> None:
+    assert python(POOL) == "TerminatedWorkerError"
+
+
+POOL = """
+import time
+from joblib.externals.loky import get_reusable_executor
+from quatspline.system.ending import end_workers
+pool = get_reusable_executor(2)
+pool.submit(abs, -1).result()
+held = pool.submit(time.sleep, 600)
+end_workers()
+print(type(held.exception(60)).__name__)
+"""

@@ -15,7 +15,7 @@ from quatspline.engines import engine, plain
 from quatspline.families.arcs import SIZE, acceleration, near_point, velocity
 from quatspline.kernels.family import family as made_family
 from quatspline.kernels.jit import compiled, fit_kernel
-from quatspline.segments import SegmentCurve
+from quatspline.segments import CHUNK, FITTED, SegmentCurve
 from walks import applies, count_of, inside, knots_of, walk
 
 AGREE, REPEATED, MANY = 1e-13, 1e-11, 10
@@ -141,6 +141,33 @@ def test_many_small_curves_repay_it_too(automatic, monkeypatch) -> None:
         engines.append(curve.engine)
     assert engines[0] == "python"
     assert engines[-1] == "compiled"
+
+
+def test_one_order_that_is_compiled_commits_no_other(automatic, monkeypatch) -> None:
+    monkeypatch.setattr(engine, "REPAYS", 4000.0)
+    Fresh = fresh_scheme()
+    worked = Fresh(None, walk(4, 30.0))
+    worked(np.linspace(0.0, 3.0, 4000))
+    for curve in (worked, Fresh(None, walk(4, 30.0))):
+        assert curve.engine == "compiled"
+        curve(0.5, 2)
+        assert [bool(kernel.address) for kernel in curve.kernels] == [True, False, False]
+
+
+def test_windows_of_a_long_curve_count_where_they_are_fitted(automatic, monkeypatch) -> None:
+    """Nothing before, so that a look costs no compiling; then each, until they repay it."""
+    monkeypatch.setattr(engine, "REPAYS", 2.5 * FITTED * CHUNK)
+    curve = fresh_scheme()(None, np.tile([1.0, 0.0, 0.0, 0.0], (5 * CHUNK, 1)))
+    assert curve.fit_kernel.work == 0.0
+    machine = []
+    for chunk in range(4):
+        curve((chunk + 0.5) * CHUNK)
+        machine.append(bool(curve.fit_kernel.address))
+    assert machine == [False, False, True, True]
+
+
+def test_a_scheme_without_kernels_has_no_engine() -> None:
+    assert qs.build("scipy-slerp", None, walk(4, 30.0)).engine is None
 
 
 def test_tables_are_compiled_first(automatic, monkeypatch) -> None:

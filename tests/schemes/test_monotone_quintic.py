@@ -7,7 +7,7 @@ import quatspline as qs
 from golden import assert_golden_new, new_entries
 from quatspline import quaternion
 from quatspline.curve import Curve
-from quatspline.fitting.monotone_rates import _interval, monotone
+from quatspline.fitting.monotone_rates import interval, monotone
 from quatspline.instruments.fairness import fairness
 from quatspline.kernels.values import Vec
 from quatspline.quaternion import FloatArray
@@ -145,7 +145,7 @@ def test_derivatives_of_the_widest_limits_do_not_change_sign() -> None:
     basis = np.concatenate([powers, powers[1::-1, ::-1]])
     for slack in (0.0, 0.3, 0.5):
         v = rng.uniform(0.0, 2.5 - 0.5 * slack, (4000, 2))
-        low, high = np.vectorize(_interval)(v, 1.0, slack)
+        low, high = np.vectorize(interval)(v, 1.0, slack)
         bent = np.where(rng.uniform(size=v.shape) < 0.5, low, high)  # corners are the worst
         d = v + bent / 4.0
         middle = 5.0 - v.sum(axis=1) - d.sum(axis=1)
@@ -167,7 +167,7 @@ def test_one_acceleration_serves_both_sides() -> None:
         v, a = (x.x for x in monotone(Vec(v, 0, 0), Vec(a, 0, 0), *steps, h0, h1, True, slack))
         assert -1e-12 <= v <= (2.5 - 0.5 * slack) * min(l0, l1) + 1e-12
         for pulled, length in ((h1 * a, l1), (-h0 * a, l0)):
-            low, high = _interval(v, length, slack)
+            low, high = interval(v, length, slack)
             assert low - 1e-12 * (l0 + l1) <= pulled <= high + 1e-12 * (l0 + l1)
 
 

@@ -101,3 +101,13 @@ def shown(value: Value) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     return f"{value:.3g}" if isinstance(value, float) else str(value)
+
+
+def below(limit: float, value: Any) -> bool:
+    """Whether a measured value keeps to a limit; with `functools.partial` a claim's ``kept``."""
+    return bool(value <= limit)
+
+
+def above(limit: float, value: Any) -> bool:
+    """Whether a measured value exceeds a limit; with `functools.partial` a claim's ``kept``."""
+    return bool(value > limit)

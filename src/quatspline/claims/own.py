@@ -25,7 +25,7 @@ def own_rates(curve: Curve) -> list[Row]:
     """
     keyframes = curve.keyframes
     t = keyframes.inside(SAMPLES)
-    truth = stencil.rates(curve._orientation, t, keyframes.knots)
+    truth = stencil.rates(curve.orientations, t, keyframes.knots)
     speed, gain = (float(np.linalg.norm(x, axis=-1).max()) for x in truth)
     sizes = (speed, max(gain, speed / float(keyframes.spacings.mean())))
     rows = []

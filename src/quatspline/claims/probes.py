@@ -228,3 +228,20 @@ def moved_by_a_flip(name: str, count: int = 5, degrees: float = 60, **options: A
     astray = build(name, times, flipped, align=False, **options)
     t = straight.keyframes.inside(SAMPLES)
     return float(np.degrees(quaternion.distance(straight(t), astray(t)).max()))
+
+
+def norm_error(name: str, count: int = 4, degrees: float = 60) -> float:
+    """How far the length of a quaternion on the curve is off 1, at most."""
+    curve = builder(name)(*walked(count, degrees))
+    q = curve(curve.keyframes.inside(SAMPLES))
+    return float(np.abs(np.linalg.norm(q, axis=-1) - 1.0).max())
+
+
+def off_another(
+    name: str, other: str, count: int = 4, degrees: float = 60, **options: Any
+) -> float:
+    """The largest angle in degrees between the curves of two schemes; options are the other's."""
+    times, keyframes = walked(count, degrees)
+    curve, wanted = builder(name)(times, keyframes), build(other, times, keyframes, **options)
+    t = curve.keyframes.inside(SAMPLES)
+    return float(np.degrees(quaternion.distance(curve(t), wanted(t)).max()))

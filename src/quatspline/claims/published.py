@@ -1,4 +1,4 @@
-"""What publications and libraries say beyond what classes claim, each with its probes.
+"""What publications say beyond what classes claim, each with its probes; libraries: `claims.libraries`.
 
 A saying that cannot be put to the test stands here with the reason.  Keys are schemes, or entries of the
 bibliography where nothing of the kind could be built.
@@ -6,12 +6,11 @@ bibliography where nothing of the kind could be built.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import partial
-from typing import Any
 
-from quatspline.claims import paper_probes, probes
-from quatspline.claims.claim import Claim, Probe
+from quatspline.claims import libraries, paper_probes, probes
+from quatspline.claims.claim import Claim, Probe, above, below
 from quatspline.trajectories.paper import CASES
 
 IDENTITY = 1e-6
@@ -19,14 +18,6 @@ IDENTITY = 1e-6
 
 HALF = 0.5
 """Operations are not seconds: half of a printed ratio counts as that ratio."""
-
-STILL = 1e-6
-"""A speed below this share of the mean is none; differences of a library leave 1e-9."""
-
-MOVED = 1.0
-"""Degrees from which a curve has moved."""
-MENDED = 1e-6
-"""Degrees below which it has not."""
 
 SYMMETRIC = 1e-7
 """Deviations below this share of a step are none, as in the table of invariance."""
@@ -40,7 +31,7 @@ NOT_READ = "only the abstract could be read, not the construction"
 
 def published(name: str) -> Iterator[Claim]:
     """The claims about a scheme or a work, in order."""
-    for claims in (_quartic, _paper_splines, _constructions, _libraries, _unread):
+    for claims in (_quartic, _paper_splines, _constructions, libraries.claims, _unread):
         yield from (claim for claim in claims() if claim.scheme == name)
 
 
@@ -49,20 +40,12 @@ def works() -> list[str]:
     return [claim.scheme for claim in _unread()]
 
 
-def _below(limit: float, value: Any) -> bool:
-    return bool(value <= limit)
-
-
-def _above(limit: float, value: Any) -> bool:
-    return bool(value > limit)
-
-
 # -- the paper ----------------------------------------------------------------------------------
 
 
 def _quartic() -> Iterator[Claim]:
     claim = partial(Claim, "quartic", "paper")
-    exact = partial(_below, IDENTITY)
+    exact = partial(below, IDENTITY)
     error = partial(Probe, paper_probes.derivative_error)
     yield claim("printed Q' at a knot is the curve's", "0 off", [error(order=1)], exact)
     printed = "printed Q'' at a knot is the curve's"
@@ -72,13 +55,13 @@ def _quartic() -> Iterator[Claim]:
     ruled = [error(order=2, product_rule=True)]
     yield claim("Q'' at a knot by the product rule is the curve's", "0 off", ruled, exact)
     continuity = [Probe(probes.continuity, "quartic", count=n) for n in (4, 6)]
-    yield claim("C2 at equidistant knots", "at least C2", continuity, partial(_above, 1))
-    yield claim("not C3 at knots", "below C3", continuity, partial(_below, 2))
+    yield claim("C2 at equidistant knots", "at least C2", continuity, partial(above, 1))
+    yield claim("not C3 at knots", "below C3", continuity, partial(below, 2))
     inside = [Probe(probes.inner_continuity, "quartic", n, d) for n in (4, 6) for d in (60, 120)]
-    yield claim("C-infinity inside segments", "C6 as far as told", inside, partial(_above, 5))
-    yield claim("local control", 4, [Probe(probes.support, "quartic")], partial(_below, 4))
+    yield claim("C-infinity inside segments", "C6 as far as told", inside, partial(above, 5))
+    yield claim("local control", 4, [Probe(probes.support, "quartic")], partial(below, 4))
     torque = [Probe(probes.torque_ratio, "quartic", "nielson")]
-    yield claim("less fair than the B-spline", "more torque", torque, partial(_above, 1.0))
+    yield claim("less fair than the B-spline", "more torque", torque, partial(above, 1.0))
 
 
 def _paper_splines() -> Iterator[Claim]:
@@ -96,9 +79,7 @@ def _paper_splines() -> Iterator[Claim]:
                     paper_probes.operations_over_quartic, name, protocol, case.name, row.frames
                 )
                 said = f"cost over the quartic's, {row.frames} {case.name} orientations, {text}"
-                yield Claim(
-                    name, "paper", said, row.ratio, [ask], partial(_above, HALF * row.ratio)
-                )
+                yield Claim(name, "paper", said, row.ratio, [ask], partial(above, HALF * row.ratio))
 
 
 # -- other publications -------------------------------------------------------------------------
@@ -108,36 +89,18 @@ def _constructions() -> Iterator[Claim]:
     continuity = partial(Probe, probes.continuity)
     said = "a cubic B-spline by nested slerps is not C2 [kim1995bspline]"
     smooth = [continuity("nielson", count=n) for n in (3, 4)]
-    yield Claim("nielson", "paper", said, "below C2", smooth, partial(_below, 1))
+    yield Claim("nielson", "paper", said, "below C2", smooth, partial(below, 1))
     said = "power of the spacing that the acceleration's jump falls with"
     falling = [Probe(probes.jump_order, "nielson", n) for n in (41, 81)]
     yield Claim("nielson", "ours", said, 3, falling, lambda slope: abs(slope - 3.0) <= POWER)
     said = "keyframes in reverse order give another curve [kim1996hermite]"
     reverse = [Probe(probes.reversal_deviation, "kim", degrees=d) for d in (60, 120)]
-    yield Claim("kim", "paper", said, "another", reverse, partial(_above, SYMMETRIC))
+    yield Claim("kim", "paper", said, "another", reverse, partial(above, SYMMETRIC))
     said = "two arcs meet inside a segment: the acceleration jumps there"
     inside = [Probe(probes.inner_continuity, "biarc", n) for n in (4, 6)]
-    yield Claim("biarc", "ours", said, "below C2", inside, partial(_below, 1))
+    yield Claim("biarc", "ours", said, "below C2", inside, partial(below, 1))
     smooth = [continuity("squad", count=n) for n in (3, 4, 6)]
-    yield Claim("squad", "paper", "C1 [shoemake1987]", "at least C1", smooth, partial(_above, 0))
-
-
-# -- libraries ----------------------------------------------------------------------------------
-
-
-def _libraries() -> Iterator[Claim]:
-    name = "interpolatepy-squad-c2"
-    said = "at rest at the ends (and there alone)"
-    speeds = [Probe(probes.least_key_speed, name, count=n) for n in (3, 4)]
-    yield Claim(name, "peer", said, "moves at keyframes", speeds, partial(_above, STILL))
-    name = "numpy-quaternion-squad"
-    flip: Callable[..., Probe] = partial(Probe, probes.moved_by_a_flip, name)
-    said = "a keyframe of the other sign moves the curve (degrees)"
-    given = [flip(count=n) for n in (3, 5)]
-    yield Claim(name, "peer", said, "moves", given, partial(_above, MOVED))
-    said = "unflip mends a keyframe of the other sign (degrees)"
-    mended = [flip(count=n, unflip=True) for n in (3, 5)]
-    yield Claim(name, "peer", said, "does not move", mended, partial(_below, MENDED))
+    yield Claim("squad", "paper", "C1 [shoemake1987]", "at least C1", smooth, partial(above, 0))
 
 
 def _unread() -> Iterator[Claim]:

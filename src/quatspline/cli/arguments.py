@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import ast
 import math
 from collections.abc import Callable
 from contextlib import suppress
+from fractions import Fraction
 from pathlib import Path
 from typing import Any, Literal, NoReturn
 
@@ -17,7 +19,14 @@ REFUSED = 2
 
 
 class _Parser(argparse.ArgumentParser):
-    """Tells bad usage in one line."""
+    """Tells bad usage in one line, and what follows its help when that is asked for."""
+
+    closing: Callable[[], str] | None = None
+
+    def format_help(self) -> str:
+        """The help, and what closes it."""
+        text = super().format_help()
+        return f"{text}\n{self.closing()}\n" if self.closing else text
 
     def error(self, message: str) -> NoReturn:
         self.exit(REFUSED, f"{self.prog}: {one_line(message)} (see {self.prog} --help)\n")
@@ -49,6 +58,7 @@ def _add_run(commands: Any) -> None:
         description="Run experiments: by default all, the paper's in full and the others at quick "
         "size. A run that was interrupted goes on where it stopped when started alike.",
     )
+    run.closing = _experiments
     run.add_argument("experiments", nargs="*", metavar="EXPERIMENT", help="by default all")
     _add_schemes(run)
     size = run.add_mutually_exclusive_group()
@@ -62,6 +72,24 @@ def _add_run(commands: Any) -> None:
     where.add_argument("--dask", metavar="ADDRESS", help="a Dask scheduler that measures instead")
 
 
+def _experiments() -> str:
+    """Each experiment with the first line of its file; none is loaded."""
+    from quatspline.runs.experiment import files
+
+    said = {name: _first_line(path) for name, path in files().items()}
+    width = max(map(len, said), default=0)
+    return "\n".join(
+        ["experiments:", *(f"  {name:{width}}  {line}" for name, line in said.items())]
+    )
+
+
+def _first_line(path: Path) -> str:
+    """What a file says of itself; nothing where it is no Python."""
+    with suppress(SyntaxError, ValueError):
+        return (ast.get_docstring(ast.parse(path.read_bytes())) or "").partition("\n")[0]
+    return ""
+
+
 def _add_compare(commands: Any) -> None:
     compare = commands.add_parser("compare", help="schemes on your own keyframes")
     _add_keyframes(compare, nargs="?")  # it may stand behind the words of --schemes
@@ -71,7 +99,27 @@ def _add_compare(commands: Any) -> None:
     compare.add_argument("--keep", type=_count, metavar="K", help=kept)
     where = "for tables, figures and the page; by default KEYFRAMES-compared here"
     compare.add_argument("--out", type=Path, metavar="DIR", help=where)
+    _add_needs(compare)
     _add_force(compare)
+
+
+def _add_needs(compare: argparse.ArgumentParser) -> None:
+    """What a scheme must have to be recommended."""
+    needs = compare.add_argument_group(
+        "needs", "Schemes that lack one are not recommended, and are named with what they have."
+    )
+    needs.add_argument("--smooth", type=int, choices=(0, 1, 2), help="k of C^k, as measured")
+    local = "a changed keyframe changes the curve nearby only"
+    needs.add_argument("--local", action="store_true", help=local)
+    causal = "keyframes after a segment's own two that a curve may wait for"
+    needs.add_argument("--causal", type=_frames, metavar="N", help=causal)
+    for name, unit in (("rate", "degrees/s"), ("accel", "degrees/s^2")):
+        told = f"the largest |{'omega' if name == 'rate' else 'alpha'}|, {unit}"
+        needs.add_argument(f"--max-{name}", type=_rate, metavar="DEG", help=told)
+    off = "how far the curve may leave the arcs between keyframes, degrees"
+    needs.add_argument("--max-excursion", type=_least, metavar="DEG", help=off)
+    unit = "what the file's times count, such as ms or '1/30 s'; by default seconds, or what the file says"
+    needs.add_argument("--time-unit", type=_unit, metavar="UNIT", help=unit)
 
 
 def _add_sample(commands: Any) -> None:
@@ -197,7 +245,22 @@ def _angle(text: str) -> float:
     raise argparse.ArgumentTypeError(f"{text!r}: a positive angle with its unit, as 0.5deg")
 
 
+SECONDS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0}
+
+
+def _unit(text: str) -> float:
+    """Seconds of a unit of time, of several or of a fraction of one."""
+    number, _, name = text.strip().rpartition(" ")
+    with suppress(ValueError, ZeroDivisionError):
+        seconds = float(Fraction(number or 1)) * SECONDS.get(name, math.nan)
+        if 0.0 < seconds < math.inf:
+            return seconds
+    units = ", ".join(SECONDS)
+    raise argparse.ArgumentTypeError(f"{text!r}: one of {units} is expected, or as in '1/30 s'")
+
+
 _rate = _number(float, lambda value: 0.0 < value < math.inf, "a positive number")
+_least = _number(float, lambda value: 0.0 <= value < math.inf, "a number, at least 0,")
 MOST = 2**63 - 1
 """Of what is counted: beyond, a number is a slip of the keyboard and fits into no array."""
 

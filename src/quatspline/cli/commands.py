@@ -41,7 +41,7 @@ CLAIMS: tuple[tuple[str, Callable[[Any], Any]], ...] = (
     ("uneven times", lambda s: _yes(s.non_uniform)),
     ("closes", lambda s: _yes(s.closable)),
     ("iterates", lambda s: _yes(s.iterative)),
-    ("from", lambda s: s.peer or "quatspline"),
+    ("from", lambda s: s.peer or f"quatspline{_own(s.name)}"),
     ("title", lambda s: s.title),
 )
 
@@ -134,6 +134,12 @@ def _all_or(keyframes: int | None) -> str:
     return "all" if keyframes is None else str(keyframes)
 
 
+def _own(name: str) -> str:
+    from quatspline.catalogue import ours
+
+    return " (ours)" if ours(name) else ""
+
+
 def _yes(claim: bool) -> str:
     return "yes" if claim else "no"
 
@@ -163,17 +169,16 @@ def _run(arguments: argparse.Namespace) -> int:
 
 
 def _compare(arguments: argparse.Namespace) -> int:
-    from quatspline.cli import compare, joints, options, recorded, words
+    from quatspline.cli import asked, compare, joints, options, recorded, words
     from quatspline.runs.results import Results
 
     # A wrong name is told before a long file is read.
     arguments.keyframes, schemes = words.of_compare(arguments.keyframes, arguments.schemes)
     given = options.of_schemes(schemes, arguments.options)
     motion = recorded.motion_of(arguments)
+    needs = asked.needs(arguments, motion)
+    asked.check_tracks(arguments, motion, needs)
     body = len(motion.tracks) == 1
-    if not body and arguments.keep is None:
-        told = f"{len(motion.tracks)} tracks are compared at the frames that --keep K leaves out"
-        raise ValueError(f"{arguments.keyframes}: {told}")
     out = arguments.out or Path(f"{Path(arguments.keyframes).stem}-compared")
     results = Results(out, force=arguments.force)
     with results.writing():
@@ -182,6 +187,7 @@ def _compare(arguments: argparse.Namespace) -> int:
         common |= {"name": Path(arguments.keyframes).name, "options": given}
         if not body:
             return joints.command(motion, every=arguments.keep, **common)
+        common |= {"needs": needs, "told": asked.told(arguments, motion)}
         return compare.command(motion, closed=arguments.closed, every=arguments.keep, **common)
 
 

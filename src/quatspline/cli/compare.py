@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from quatspline.curve import Curve
     from quatspline.findings.findings import Finding
+    from quatspline.findings.needs import Needs
     from quatspline.keyframes import Keyframes
     from quatspline.motion import Motion
     from quatspline.runs.results import Results
@@ -48,6 +49,8 @@ def command(
     schemes: Sequence[str] | None,
     closed: bool,
     results: Results,
+    needs: Needs,
+    told: bool = False,
     every: int | None = None,
     options: Mapping[str, Any] = MappingProxyType({}),
     call: Sequence[str] = (),
@@ -61,6 +64,7 @@ def command(
         On bad keyframes, an unknown scheme, or files in the folder that are not its own.
     """
     from quatspline.cli.played import played
+    from quatspline.findings.recommendation import markdown
     from quatspline.page import own_scene, write_page
     from quatspline.page.own_sections import OWN
 
@@ -81,8 +85,10 @@ def command(
         formats=comparing.FORMATS | dict.fromkeys(ERRORS, ".3e"),
         keys=[],
     )
-    found = _recommended(results, table)
-    names = _drawn(results, table, curves, keyframes)
+    found = answer(keyframes, table, needs, told=told)
+    say(spoken(found, table, needs))  # before a disk runs full
+    results.text("recommendation.md", markdown(found))
+    names = _drawn(results, table, curves, keyframes, needs)
     results.tidy("compare")  # without --keep there is no truth to play
     entry = {"title": comparing.TITLE, "size": f"{keyframes.count} keyframes", "seed": None}
     results.record("compare", entry | {"seconds": round(time.perf_counter() - began, 3)})
@@ -127,18 +133,31 @@ def _with_errors(
     return table
 
 
-def _recommended(results: Results, table: pd.DataFrame) -> list[Finding]:
-    """Say and write the recommendation."""
-    from quatspline.findings.recommendation import markdown, recommendation
+def answer(
+    keyframes: Keyframes, table: pd.DataFrame, needs: Needs, *, told: bool = False
+) -> list[Finding]:
+    """What is said of keyframes: warnings, then the recommendation."""
+    from quatspline.findings.cautions import cautions
+    from quatspline.findings.recommendation import recommendation
 
-    found = recommendation(table)
-    say(finding.text for finding in found)  # before a disk runs full
-    results.text("recommendation.md", markdown(found))
-    return found
+    warned = cautions(keyframes, table, second=needs.second, told=told)
+    return [*warned, *recommendation(table, needs)]
+
+
+def spoken(found: Sequence[Finding], table: pd.DataFrame, needs: Needs) -> list[str]:
+    """What the terminal shows: the answer, and the best rows of the table."""
+    from quatspline.cli import ranking
+
+    rows = ranking.table(table, needs)
+    return [*(finding.text for finding in found), *(["", *rows] if rows else [])]
 
 
 def _drawn(
-    results: Results, table: pd.DataFrame, curves: Mapping[str, Curve], keyframes: Keyframes
+    results: Results,
+    table: pd.DataFrame,
+    curves: Mapping[str, Curve],
+    keyframes: Keyframes,
+    needs: Needs,
 ) -> list[str]:
     """Draw the figures; the schemes whose curves are shown."""
     import matplotlib as mpl
@@ -147,7 +166,7 @@ def _drawn(
     from quatspline.findings.recommendation import shown
 
     mpl.use("Agg")  # nothing here may open a window
-    names = shown(table)[: comparison.CURVES]
+    names = shown(table, needs)[: comparison.CURVES]
     with style.house():
         results.figure("compare", comparison.bars(table))
         results.figure("rates", comparison.rates({name: curves[name] for name in names}, keyframes))

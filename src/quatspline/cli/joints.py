@@ -171,6 +171,9 @@ def _lines(table: pd.DataFrame) -> list[str]:
     """A line for each scheme that was measured, and one of each that was not."""
     import numpy as np
 
+    from quatspline.catalogue import called
+
+    table = table.assign(scheme=table["scheme"].map(called))
     measured = table[table["failure"].isna()]
     width = int(table["scheme"].str.len().max())
     lines = [f"{'scheme':{width}}  median    worst     largest (degrees at frames left out)"]

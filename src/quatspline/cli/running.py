@@ -11,6 +11,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from quatspline import catalogue
+from quatspline.cli.outcome import outcomes
 from quatspline.engines.engine import always_compiled
 from quatspline.runs import sweeps
 from quatspline.runs.experiment import (
@@ -24,6 +25,7 @@ from quatspline.runs.experiment import (
 )
 from quatspline.runs.journal import Journal, Kept, forget
 from quatspline.runs.results import JOURNAL, PAGE, Results, now
+from quatspline.system.stdout import say
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -49,10 +51,11 @@ def run(
     options and sources had finished is kept.  ``size`` is by default full for the paper's, quick
     for the others.  Cells are measured by ``jobs`` processes, by default one a core, or by the Dask
     scheduler at an address.  A run of all experiments ends with derived tables and the page, and so
-    does any into a folder that has them.  Files that are not the folder's own are replaced only
-    with ``force``.  Raises ValueError for unknown or unusable names, for ``schemes`` without one,
-    without a scheduler, and, before anything is measured, for a folder that another process writes
-    to or that has foreign files of the names to be written.
+    does any into a folder that has them; the result of each table is then said in a line.  Files that
+    are not the folder's own are replaced only with ``force``.  Raises ValueError for unknown or
+    unusable names, for ``schemes`` without one, without a scheduler, and, before anything is
+    measured, for a folder that another process writes to or that has foreign files of the names to
+    be written.
     """
     if schemes is not None and not schemes:
         raise ValueError("schemes: no name given")
@@ -74,6 +77,7 @@ def run(
             journal.close()
             failed = [e.name for e in chosen if results.manifest["experiments"][e.name]["failure"]]
             failed += _write_page(results, asked=not names)
+            say(outcomes(results.folder, [e.name for e in chosen if e.name not in failed]))
     return failed
 
 

@@ -21,6 +21,7 @@ from quatspline.kernels.jit import (
     BLOCK,
     CONSTANTS,
     LANES,
+    OVERWRITTEN,
     REACH,
     RESULT,
     ROWS,
@@ -40,6 +41,9 @@ second-level cache until all tracks have written theirs beside one another."""
 SHEET = ROWS * BLOCK
 BLOCKS = BATCH // LONG + 2
 """The most blocks that a batch falls into: all but the last are long or mixed and full."""
+
+UNTOUCHED = -7.25e299
+"""What no fit writes."""
 
 KNOTS, COUNT, SEGMENTS, TRACKS, CONSTANT_COUNT, SIGNS, CLOSED = range(7)
 
@@ -73,9 +77,15 @@ def _describe(knots, segments, signs, closed, places):
 
 
 @compiled
-def fit_tracks(address, tracks, h, closed, signs, parameters, segments, report):
-    """Call a fit kernel on every track (K, n, 4); the largest reach, UNREPORTED where one reports none."""
+def fit_tracks(address, tracks, h, closed, signs, parameters, segments, report, beyond):
+    """Call a fit kernel on every track (K, n, 4); the largest reach, UNREPORTED where one reports none.
+
+    ``beyond`` is the memory that follows the segments: OVERWRITTEN says that a kernel wrote there, for nothing
+    checks the bounds of rows in compiled code.
+    """
     reach = 0.0
+    for j in range(beyond.size):
+        beyond[j] = UNTOUCHED
     if not tracks.shape[0] == segments.shape[0] == report.shape[0] == signs.size:
         raise ValueError("tracks, segments, report and signs: one of each per track is expected")
     if segments.shape[1] % h.size or tracks.shape[1] + closed != h.size + 1:
@@ -86,6 +96,9 @@ def fit_tracks(address, tracks, h, closed, signs, parameters, segments, report):
         if report[k, REACH] == UNREPORTED:
             return UNREPORTED
         reach = max(reach, report[k, REACH])
+    for j in range(beyond.size):
+        if beyond[j] != UNTOUCHED:
+            return OVERWRITTEN
     return reach
 
 

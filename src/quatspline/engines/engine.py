@@ -68,8 +68,8 @@ def always_compiled() -> Iterator[None]:
         _always -= 1
 
 
-def compiles(work: float, *kernels: Kernel) -> bool:
-    """Whether so much work, in samples, is for machine code; where the kernels are, any is.
+def compiles(work: float, kernel: Kernel | None = None) -> bool:
+    """Whether so much work, in samples, is for machine code; where that of the kernel is there, any is.
 
     Raises
     ------
@@ -83,9 +83,11 @@ def compiles(work: float, *kernels: Kernel) -> bool:
         return True
     if asked:
         return asked == "compiled"
-    there = bool(kernels) and all(kernel.address for kernel in kernels)
-    work = max([work, *(kernel.work for kernel in kernels)])
-    return there or work >= REPAYS or (work >= LOADS and _is_warm())
+    if kernel is not None:
+        if kernel.address:
+            return True
+        work = max(work, kernel.work)
+    return work >= REPAYS or (work >= LOADS and _is_warm())
 
 
 def mark_warm() -> None:

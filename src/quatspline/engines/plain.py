@@ -21,8 +21,12 @@ def fit_tracks(
     parameters: FloatArray,
     segments: FloatArray,
     report: FloatArray,
+    beyond: FloatArray,
 ) -> float:
-    """Run a fit kernel on every track (K, n, 4); the largest reach that they report."""
+    """Run a fit kernel on every track (K, n, 4); the largest reach that they report.
+
+    What lies ``beyond`` the segments is out of reach: Python checks the bounds of rows.
+    """
     report[:, REACH] = UNREPORTED
     for k, sign in enumerate(signs.tolist()):
         kernel.python(tracks[k], h, closed, sign, parameters, segments[k], report[k])

@@ -14,13 +14,7 @@ from __future__ import annotations
 from quatspline.families.polynomials import bound, from_powers, quintic, quintic_jet
 from quatspline.kernels.family import Family, family
 from quatspline.kernels.jit import inlined
-from quatspline.kernels.scalars import (
-    NEAR,
-    SMALL,
-    sincos_any,
-    sincos_near,
-    sincos_small,
-)
+from quatspline.kernels.scalars import NEAR, SMALL, sincos_any, sincos_near, sincos_small
 from quatspline.kernels.values import (
     cross,
     polar,

@@ -90,22 +90,17 @@ def mean(p, w):
 
 @inlined
 def basis(before, c, after, u):
-    """B_{i-1} ... B_{i+2} at u from m_i, the coefficients of B_{i+1} + B_{i+2} and p_{i+1}."""
+    """B_{i-1} ... B_{i+2} at u from m_i, the coefficients of B_{i+1} + B_{i+2} and p_{i+1}; two derivatives."""
     v = 1.0 - u
-    first, last = before * v * v * v, after * u * u * u
+    f, f1, f2 = before * v * v * v, -3.0 * before * v * v, 6.0 * before * v
+    g, g1, g2 = after * u * u * u, 3.0 * after * u * u, 6.0 * after * u
     inner = ((c[3] * u + c[2]) * u + c[1]) * u + c[0]
-    return first, 1.0 - first - inner, inner - last, last
-
-
-@inlined
-def basis_slopes(before, c, after, u):
-    """Their first and second derivatives by u."""
-    v = 1.0 - u
-    f1, f2 = -3.0 * before * v * v, 6.0 * before * v
-    g1, g2 = 3.0 * after * u * u, 6.0 * after * u
-    inner1 = (3.0 * c[3] * u + 2.0 * c[2]) * u + c[1]
-    inner2 = 6.0 * c[3] * u + 2.0 * c[2]
-    return (f1, -f1 - inner1, inner1 - g1, g1), (f2, -f2 - inner2, inner2 - g2, g2)
+    inner1, inner2 = (3.0 * c[3] * u + 2.0 * c[2]) * u + c[1], 6.0 * c[3] * u + 2.0 * c[2]
+    return (
+        (f, 1.0 - f - inner, inner - g, g),
+        (f1, -f1 - inner1, inner1 - g1, g1),
+        (f2, -f2 - inner2, inner2 - g2, g2),
+    )
 
 
 @inlined
@@ -134,16 +129,23 @@ def _coefficients(c):
 @inlined
 def point(c, u):
     """The mean of the segment's controls."""
-    return mean(_controls(c), basis(*_coefficients(c), u))
+    w, _, _ = basis(*_coefficients(c), u)
+    return mean(_controls(c), w)
+
+
+@inlined
+def _moving(c, u):
+    """The weights and their derivatives, the logarithms of (1), and v of (2)."""
+    p, (w, w1, w2) = _controls(c), basis(*_coefficients(c), u)
+    l = logs(mean(p, w), p)
+    return w, w1, w2, l, _solved(l, w, mixed(w1, l))
 
 
 @inlined
 def velocity(c, u):
     """(2)."""
-    p, w = _controls(c), basis(*_coefficients(c), u)
-    w1, _ = basis_slopes(*_coefficients(c), u)
-    l = logs(mean(p, w), p)
-    return _solved(l, w, mixed(w1, l))
+    _, _, _, _, v = _moving(c, u)
+    return v
 
 
 @inlined
@@ -161,10 +163,7 @@ def _bent(l, v):
 @inlined
 def acceleration(c, u):
     """(3)."""
-    p, w = _controls(c), basis(*_coefficients(c), u)
-    w1, w2 = basis_slopes(*_coefficients(c), u)
-    l = logs(mean(p, w), p)
-    v = _solved(l, w, mixed(w1, l))
+    w, w1, w2, l, v = _moving(c, u)
     k0, e0 = _bent(l[0], v)
     k1, e1 = _bent(l[1], v)
     k2, e2 = _bent(l[2], v)

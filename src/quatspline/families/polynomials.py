@@ -55,8 +55,4 @@ def quintic_jet(c, p, u):
     g, g1 = ((e * u + d) * u + b) * u + a, (3.0 * e * u + 2.0 * d) * u + b
     g2 = 6.0 * e * u + 2.0 * d
     w, w1, rise = u - u * u, 1.0 - 2.0 * u, c[p + 1]
-    return (
-        w * g + (rise * u + c[p]),
-        w * g1 + (w1 * g + rise),
-        w * g2 + 2.0 * (w1 * g1 - g),
-    )
+    return w * g + (rise * u + c[p]), w * g1 + (w1 * g + rise), w * g2 + 2.0 * (w1 * g1 - g)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from quatspline.catalogue import called
 from quatspline.curve import Curve
 from quatspline.figures import style
 from quatspline.figures.named import third_party
@@ -37,8 +38,8 @@ def bars(table: pd.DataFrame) -> Figure:
         face = {"markerfacecolor": "white"} if third_party(str(row["scheme"])) else {}
         ax.plot(row["torque_over_least"], height, **(looks | face))
     ax.set(xscale="log", xlabel="torque over the least", yticks=range(len(rows)))
-    told = zip(rows["scheme"], rows["continuity"], strict=True)
-    ax.set_yticklabels([f"{name} (C{k:.0f})" for name, k in told])
+    told = zip(rows["scheme"].map(called), rows["continuity"], strict=True)
+    ax.set_yticklabels([f"{name} C{k:.0f}" for name, k in told])
     return fig
 
 
@@ -51,7 +52,7 @@ def rates(curves: Mapping[str, Curve], keyframes: Keyframes) -> Figure:
         looks = style.scheme_style(name) | {"marker": ""}
         for ax, rate in zip(panels[:, 0], rates_since(curve, t), strict=True):
             size = np.linalg.norm(rate, axis=-1)
-            ax.plot(*(largest(t, size) if long else (t, size)), label=name, **looks)
+            ax.plot(*(largest(t, size) if long else (t, size)), label=called(name), **looks)
     for ax, label in zip(
         panels[:, 0], (r"$|\omega|$ (rad/t)", r"$|\alpha|$ (rad/t$^2$)"), strict=True
     ):

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from quatspline.catalogue import found
+from quatspline.catalogue import called, found
 from quatspline.figures import direct, style
 from quatspline.figures.direct import GREY, End
 
@@ -47,7 +47,7 @@ def draw_curves(ax: Any, curves: Iterable[tuple[str, pd.Series, pd.Series]]) -> 
         ax.plot(x, y, **look)
         finite = np.isfinite(y.to_numpy(dtype=float))
         if name in NAMED and finite.any():
-            ends[name] = End(x[finite].iloc[-1], y[finite].iloc[-1], name, look["color"])
+            ends[name] = End(x[finite].iloc[-1], y[finite].iloc[-1], called(name), look["color"])
     return ends
 
 

@@ -8,17 +8,20 @@ one keyframe to the next: nobody who draws or drives it means that, and no other
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from quatspline.catalogue import found
+from quatspline.comparing import MET
+from quatspline.findings.needs import Needs, reach
 from quatspline.findings.questions import Filter
 from quatspline.instruments.trials import Row, records
 
-MET = 1e-6
-"""Largest angle at a keyframe, in rad, that counts as passing through it."""
+STILL = 0.01
+"""Degrees within which a body that holds stands still."""
 FAIR = 1.05
 """Torque within this of the least is as good as the least: nobody sees five per cent."""
 STOPS = 0.01
@@ -42,8 +45,36 @@ def rank(row: Row) -> tuple[Any, ...]:
     item = found().get(str(row["scheme"]))
     claims = (item.scheme.continuity, item.scheme.order) if item and item.scheme else (0, 0)
     torque, jerk = (float(f"{row[name]:.6g}") for name in ("torque", "jerk"))  # not by rounding
-    reach = np.inf if row["support"] == "all" else int(row["support"])
-    return torque, *(-claim for claim in claims), jerk, reach, str(row["scheme"])
+    return torque, *(-claim for claim in claims), jerk, reach(row["support"]), str(row["scheme"])
+
+
+def candidates(needs: Needs) -> tuple[Filter, ...]:
+    """Those among which a recommendation chooses, one after the other."""
+    level = 2 if needs.smooth is None else needs.smooth
+    passing = usable if level > 0 else through
+    return passing, needs.met, still, partial(smooth, level=level), direct
+
+
+def through(rows: pd.DataFrame, _: Row) -> pd.Series:
+    """Those whose curves pass through the keyframes without a leap."""
+    return rows["failure"].isna() & (rows["misses"] <= MET) & (rows["continuity"] >= 0)
+
+
+def near(rows: pd.DataFrame, _: Row) -> pd.Series:
+    """Those that smooth keyframes which are told to be noisy: they say that they do not interpolate."""
+    noisy = rows["failure"].isna() & (rows["noise"] > 0.0) & (rows["continuity"] >= 2)
+    return noisy & rows["scheme"].map(_smooths)
+
+
+def _smooths(name: str) -> bool:
+    item = found().get(name)
+    return item is not None and item.scheme is not None and not item.scheme.interpolates
+
+
+def still(rows: pd.DataFrame, _: Row) -> Any:
+    """Those that stand still while the keyframes do, if any do."""
+    stands = rows["hold_rotation"] <= STILL
+    return stands if stands.any() else True
 
 
 def lengths(rows: pd.DataFrame) -> pd.Series:
@@ -61,20 +92,16 @@ def usable(rows: pd.DataFrame, _: Row) -> pd.Series:
     return rows["failure"].isna() & (rows["misses"] <= MET) & np.isfinite(rows["torque"])
 
 
-def smooth(rows: pd.DataFrame, _: Row) -> Any:
+def smooth(rows: pd.DataFrame, _: Row, level: int = 2) -> Any:
     """C2 as measured (C1 if none is) and not stopping at keyframes, or where those go astray the next best."""
     far = ASTRAY * lengths(rows).min()
-    near = (level for level in _levels(rows) if lengths(level).min() <= far)
+    near = (some for some in _levels(rows, level) if lengths(some).min() <= far)
     return rows.index.isin(next(near, rows).index)
 
 
 def direct(rows: pd.DataFrame, _: Row) -> pd.Series:
     """Those that do not turn much further than the shortest."""
     return lengths(rows) <= ROUNDABOUT * lengths(rows).min()
-
-
-CANDIDATES: tuple[Filter, ...] = (usable, smooth, direct)
-"""Those among which a recommendation chooses."""
 
 
 def fairest(rows: pd.DataFrame, _: Row) -> list[bool]:
@@ -107,8 +134,17 @@ def alike(rows: pd.DataFrame, taken: Row) -> pd.Series:
     return same
 
 
-def _levels(rows: pd.DataFrame) -> Iterator[pd.DataFrame]:
+def stops(rows: pd.DataFrame) -> pd.Series:
+    """Those that stop at a keyframe, where keyframes do not hold: there a body that stands still has to."""
+    return (rows["key_speed"] < STOPS) & rows["hold_rotation"].isna()
+
+
+def _levels(rows: pd.DataFrame, level: int) -> Iterator[pd.DataFrame]:
     """Ever more of the usable rows: C2 as measured (C1 if none is) and not stopping at keyframes first."""
-    for least in (min(2, rows["continuity"].max()), -np.inf):
-        level = rows[rows["continuity"] >= least]
-        yield from (level[~(level["key_speed"] < STOPS)], level)
+    for least in (min(level, rows["continuity"].max()), -np.inf):
+        some = rows[rows["continuity"] >= least]
+        yield from (some[~stops(some)], some)
+
+
+CANDIDATES = candidates(Needs())
+"""Those of somebody who asks for nothing."""

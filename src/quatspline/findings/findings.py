@@ -16,7 +16,7 @@ from quatspline.instruments.summary import ALL
 
 @dataclass(frozen=True)
 class Finding:
-    """A sentence: text without a number of its own, and quotes."""
+    """A sentence: text, and a quote for each number of a table; those of keyframes and needs are text."""
 
     topic: str
     parts: tuple[Part, ...]
@@ -214,8 +214,8 @@ def _smoothing(cell: Ledger) -> tuple[Part, ...]:
     return said(
         "What smoothing buys: with white noise of {sigma:.0f} degree about each axis upon {keyframes:.0f} keyframes of "
         f"a known motion the rms error is, in degrees, {_listed(NAMED, '.2f')}; of the angular velocity, in degrees "
-        "per second, {through:.3g} through the keyframes (local-quintic) and {near:.3g} near them. The noise is told from "
-        "the keyframes as {told:.2f} degrees.",
+        "per second, {through:.3g} through the keyframes (local-quintic) and {near:.3g} near them. The noise is told "
+        "from the keyframes as {told:.2f} degrees.",
         sigma=cell("denoise", "noise_degrees", scheme="slerp", **where),
         keyframes=cell("denoise", "keyframes", scheme="slerp", **where),
         through=cell("denoise", "omega", scheme="local-quintic", **where),

@@ -44,6 +44,7 @@ EXPRESSIONS: dict[str, Callable[..., Any]] = {
     "ratio": lambda above, below: above / below,
     "halved": lambda order: 2.0**order,
     "rounded": three_digits,
+    "rounded degrees": lambda value: three_digits(math.degrees(value)),
     "rounded ratio": lambda above, below: three_digits(above / below),
     "reason": without_name,
     "count": lambda *values: len(values),

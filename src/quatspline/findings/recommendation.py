@@ -3,48 +3,109 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 from math import isclose
 
 import numpy as np
 import pandas as pd
 
+from quatspline.catalogue import PAPERS, called
+from quatspline.comparing import MET
 from quatspline.findings import candidates
 from quatspline.findings.candidates import (
     CANDIDATES,
-    MET,
     ROUNDABOUT,
-    STOPS,
+    STILL,
     alike,
     itself,
     measured,
     rank,
 )
 from quatspline.findings.findings import Finding, lines
-from quatspline.findings.questions import ROUNDED, Question, Table, Words, answered, by_name
-from quatspline.findings.quotes import Part, Quote, without_name
-from quatspline.instruments.trials import Row, records
+from quatspline.findings.needs import Needs, breaches, had
+from quatspline.findings.phrases import EQUAL, PHRASES
+from quatspline.findings.questions import Filter, Question, Table, answered, by_name
+from quatspline.findings.quotes import Part, without_name
+from quatspline.instruments.trials import records
 
-EQUAL = 0.005
-"""Torques that differ by a smaller share are the same to three digits, and said to be."""
 ADVICE = "recommendation"
-PAPERS = "quartic"
-"""What a reader of the paper asks about."""
+NOTHING = Needs()
 FAMILIAR = (PAPERS, "squad", "nielson", "slerp")
 """Curves that readers know, drawn beside the recommended one."""
 
 
-def recommendation(frame: pd.DataFrame) -> list[Finding]:
+def recommendation(frame: pd.DataFrame, needs: Needs = NOTHING) -> list[Finding]:
     """The advice for a table of `quatspline.compare`, best reason first, then what was not measured and why.
 
-    It takes, of the candidates (see `candidates`) within FAIR of the least torque, a local scheme before global ones,
-    then the one of least torque.
+    It takes, of the candidates (see `candidates`) that meet the needs and are within FAIR of the least torque, a
+    local scheme before global ones, then the one of least torque; of noisy keyframes first one that smooths them.
     """
     table = Table("compare", frame, frame, PHRASES)
-    best = records(table.asked(TAKE.filters, rank).rows)[:1]
-    questions = (TAKE, *BESIDE) if best else NONE
+    best = records(table.asked(take(needs), rank).rows)[:1]
+    smoother = records(table.asked(smoothing(needs), rank).rows)[:1]
     table = replace(table, taken=best[0] if best else {})
-    return [Finding(ADVICE, parts) for parts in answered((*questions, *OTHERS), table)]
+    questions = (
+        (*_taken(needs, bool(smoother)), *_beside(needs)) if best else _none(needs, bool(smoother))
+    )
+    head = (Question(NEAR, smoothing(needs), rank),) if smoother else ()
+    said = list(answered((*head, *questions), table))
+    if needs.limits:
+        lost = table.asked((measured,)).rows
+        said += map(tuple, breaches(needs, lost, called))
+    return [Finding(ADVICE, parts) for parts in [*said, *answered(OTHERS, table)]]
+
+
+def take(needs: Needs) -> tuple[Filter, ...]:
+    """Which schemes may be taken, of which the first by `rank` is."""
+    return (
+        *candidates.candidates(needs),
+        lambda rows, _: rows["torque"] <= candidates.FAIR * rows["torque"].min(),
+        lambda rows, _: (rows["support"] != "all") | bool((rows["support"] == "all").all()),
+    )
+
+
+def smoothing(needs: Needs) -> tuple[Filter, ...]:
+    """Which schemes may be taken in place of one that passes through noise."""
+    return candidates.near, needs.met
+
+
+def _taken(needs: Needs, noisy: bool) -> tuple[Question, ...]:
+    """What is said of the scheme that is taken."""
+    asked = Question(
+        lambda table: ("It meets what was asked for: ", *had(needs.limits, table.best), "."),
+        (itself,),
+    )
+    return Question(THROUGH if noisy else TAKE, take(needs), rank), *(
+        (asked,) if needs.limits else ()
+    )
+
+
+def _none(needs: Needs, smoothed: bool) -> tuple[Question, ...]:
+    """What is said where no scheme that passes through the keyframes is taken."""
+    if smoothed:
+        return ()
+    nearest = Question(
+        lambda table: _nearest(needs, table),
+        (candidates.through, lambda *_: bool(needs.limits)),
+        needs.distance,
+    )
+    return (*NONE[:1], nearest) if needs.limits else NONE
+
+
+def _nearest(needs: Needs, table: Table) -> tuple[Part, ...]:
+    """That no scheme meets all needs, and the one that comes nearest."""
+    every = ", ".join(limit.flag for limit in needs.limits)
+    lost = needs.broken(table.best)
+    asked = "all that was asked for" if len(needs.limits) > 1 else "what was asked for"
+    if not lost:
+        return (
+            f"No recommendation: of schemes that meet {asked} ({every}), none has a continuous velocity.",
+        )
+    told = had(lost, table.best)
+    return (
+        f"No scheme measured meets {asked} ({every}). The nearest is {called(table.best['scheme'])}: ",
+        *told,
+        ".",
+    )
 
 
 def markdown(found: list[Finding]) -> str:
@@ -52,168 +113,94 @@ def markdown(found: list[Finding]) -> str:
     return "# Recommendation\n\n" + "\n".join(lines(found)) + "\n"
 
 
-def shown(frame: pd.DataFrame) -> list[str]:
-    """The schemes that were measured: the recommended one, the fairest candidate, what people know, the others."""
+def shown(frame: pd.DataFrame, needs: Needs = NOTHING) -> list[str]:
+    """The schemes that were measured: those recommended, the fairest candidate, what people know, the others."""
     table = Table("compare", frame, frame, PHRASES)
     every = table.asked((measured,)).rows["scheme"].tolist()
-    taken, fair = (table.asked(f, rank).rows["scheme"][:1] for f in (TAKE.filters, CANDIDATES))
-    return list(dict.fromkeys([*taken, *fair, *(n for n in FAMILIAR if n in every), *every]))
-
-
-# -- phrases ------------------------------------------------------------------------------------
-
-
-def _misses(table: Table) -> tuple[Part, ...]:
-    return (table.quote("misses", ".0e" if table.best["misses"] else ".0f"),)
-
-
-def _has_torque(table: Table) -> tuple[Part, ...]:
-    """How much, where there is another to say it beside."""
-    at_rest = table.taken["torque"] == 0.0 and alike(table.frame, table.taken).sum() > 1
-    known = np.isfinite(table.taken["torque_over_least"]) and measured(table.frame, {}).sum() > 1
-    return ("has ", *_over_least("torque", "torque", table), ", ") if known and not at_rest else ()
-
-
-def _over_least(energy: str, thing: str, table: Table) -> tuple[Part, ...]:
-    """How much of an energy a scheme needs, as an object of "has"."""
-    column, least = f"{energy}_over_least", f"the least {thing} of all measured"
-    over = table.best[column]
-    if np.isinf(over):
-        return (f"a {thing} where another needs none",)
-    if over - 1.0 > EQUAL:
-        return table.quote(column, ROUNDED), f" times {least}"
-    return (least if over == 1.0 else f"{least} to three digits",)
-
-
-def _reach(row: Row) -> str:
-    nearby = "a changed keyframe changes the curve nearby only"
-    return "all keyframes shape it" if row["support"] == "all" else nearby
-
-
-def _price(table: Table) -> tuple[str, ...]:
-    """What speaks against a scheme that is better than the recommended one, if its reach does."""
-    own = _reach(table.best)
-    return () if own == _reach(table.taken) else (f", but {own}",)
-
-
-def _more(table: Table) -> tuple[Part, ...]:
-    """By how much the torque of the recommended one is more."""
-    if table.best["torque"] == 0.0:
-        return ("it needs no torque",)
-    ratio = table.quote("taken.torque/torque", ROUNDED)
-    return f"the torque of {table.taken['scheme']} is ", ratio, " times its own"
-
-
-def _at_torque(table: Table) -> tuple[Part, ...]:
-    """What a quicker scheme costs.  No seconds: they differ from run to run, and stand in the table."""
-    other, own, usual = table.taken["scheme"], table.best["torque"], table.taken["torque"]
-    if isclose(own, usual, rel_tol=EQUAL):
-        return ", at the same torque", *_price(table)
-    if usual == 0.0:
-        return (f", but it needs a torque where {other} needs none",)
-    times = table.quote("torque/taken.torque", ROUNDED), f" times that of {other}"
-    if own < usual:
-        return ", and its torque is lower, too, ", *times, *_price(table)
-    return ", but its torque is ", *times
-
-
-def _count(table: Table) -> tuple[Part, ...]:
-    return (Quote(tuple(table.cell("torque", row) for row in records(table.rows)), "count"),)
-
-
-def _why_alike(table: Table) -> tuple[Part, ...]:
-    if table.taken["torque"]:
-        return ("their curves coincide on these keyframes",)
-    turns = "turn about one axis at a constant rate"
-    return (f"the keyframes {turns if table.taken['length'] > MET else 'do not move'}",)
-
-
-def _schemes(table: Table) -> tuple[Part, ...]:
-    quotes = [Quote((table.cell("scheme", row),)) for row in records(table.rows)]
-    return tuple(part for quote in quotes for part in (", ", quote))[1:]
-
-
-PHRASES: dict[str, Words] = {
-    "best": lambda table: (table.best["scheme"],),
-    "taken": lambda table: (table.taken["scheme"],),
-    "misses by": _misses,
-    "has torque": _has_torque,
-    "reach": lambda table: (_reach(table.best),),
-    "count": _count,
-    "count of all": lambda table: _count(replace(table, rows=table.frame).asked((measured,))),
-    "why": _why_alike,
-    "more": _more,
-    "price": _price,
-    "at torque": _at_torque,
-    "torque over least": partial(_over_least, "torque", "torque"),
-    "peak over least": partial(_over_least, "peak", "peak acceleration"),
-    "schemes": _schemes,
-    "reason": lambda table: (Quote((table.cell("failure"), table.cell("scheme")), "reason"),),
-}
+    wanted = (smoothing(needs), take(needs), CANDIDATES)
+    first = [name for which in wanted for name in table.asked(which, rank).rows["scheme"][:1]]
+    return list(dict.fromkeys([*first, *(n for n in FAMILIAR if n in every), *every]))
 
 
 # -- questions ----------------------------------------------------------------------------------
 
-TAKE = Question(
+TAKE = (
     "Take {best}: it passes through the keyframes (largest miss {misses by} rad), is C{continuity:.0f} as "
-    "measured here, {has torque}and {reach}.",
-    (
-        *CANDIDATES,
-        lambda rows, _: rows["torque"] <= candidates.FAIR * rows["torque"].min(),
-        lambda rows, _: (rows["support"] != "all") | bool((rows["support"] == "all").all()),
-    ),
-    rank,
+    "measured here, {has torque}and {reach}."
+)
+THROUGH = (
+    "If the curve must pass through the keyframes, noise and all, take {best}: it is C{continuity:.0f} as measured "
+    "here, {has torque}and {reach}."
+)
+NEAR = (
+    "Take {best}: the keyframes have about {noise:rounded} degrees of noise about each axis, which a curve through "
+    "them repeats. It is C{continuity:.0f} as measured here, passes within {near} of each keyframe, "
+    "and {reach}."
 )
 
-BESIDE = (
-    Question(
-        "{count} of the {count of all} schemes measured are alike here (in torque, length and peak acceleration, "
-        "to six digits): {why}. Any of them will do.",
-        (alike, lambda rows, _: len(rows) > 1),
-    ),
-    Question(
-        "It turns {length:rounded} rad where the keyframes need {keyframes_length:rounded}.",
-        (
-            itself,
-            lambda rows, _: rows["length"] > (ROUNDABOUT * rows["keyframes_length"]).clip(MET),
+
+def _beside(needs: Needs) -> tuple[Question, ...]:
+    """What is asked where a scheme is taken, and held against it."""
+    pool = candidates.candidates(needs)
+    return (
+        Question(
+            "{count} of the {count of all} schemes measured are alike here (in torque, length and peak acceleration, "
+            "to six digits): {why}. Any of them will do.",
+            (alike, lambda rows, _: len(rows) > 1),
         ),
-    ),
-    Question(
-        "It comes to a stop at a keyframe.", (itself, lambda rows, _: rows["key_speed"] < STOPS)
-    ),
-    Question(
-        "Passed over for wandering: {best} turns {length:rounded} rad; {more}.",
-        (
-            candidates.usable,
-            candidates.wandering,
-            lambda rows, taken: rows["torque"] < taken["torque"],
-        ),
-        rank,
-    ),
-    Question(
-        "The fairest candidate is {best}: {more}{price}.",
-        (
-            *(*CANDIDATES, candidates.fairest),
-            lambda rows, taken: ~candidates.quicker(rows, taken),
-            lambda rows, taken: rows["torque"].map(
-                lambda own: not isclose(own, taken["torque"], rel_tol=EQUAL)
+        Question(
+            "It turns {length:rounded} rad where the keyframes need {keyframes_length:rounded}.",
+            (
+                itself,
+                lambda rows, _: rows["length"] > (ROUNDABOUT * rows["keyframes_length"]).clip(MET),
             ),
         ),
-    ),
-    Question(
-        "Tens of times quicker to evaluate than {taken} is {best}{at torque}.",
-        (*CANDIDATES, candidates.quicker),
-        rank,
-    ),
-    Question(
-        "The paper's quartic has {torque over least} and {peak over least}.",
-        (
-            lambda rows, taken: ~alike(rows, taken) & (rows["scheme"] == PAPERS),
-            lambda rows, _: np.isfinite(rows["torque_over_least"]),
+        Question(
+            "It stands still where the keyframes do.",
+            (itself, lambda rows, _: rows["hold_rotation"] <= STILL),
         ),
-    ),
-)
-"""Asked where a scheme is taken, and held against it."""
+        Question(
+            "While the keyframes stand still, it turns up to {hold_rotation:rounded} degrees away; no candidate "
+            "stands still.",
+            (itself, lambda rows, _: rows["hold_rotation"] > STILL),
+        ),
+        Question(
+            "It comes to a stop at a keyframe.", (itself, lambda rows, _: candidates.stops(rows))
+        ),
+        Question(
+            "Passed over for wandering: {best} turns {length:rounded} rad; {more}.",
+            (
+                candidates.usable,
+                needs.met,
+                candidates.wandering,
+                lambda rows, taken: rows["torque"] < taken["torque"],
+            ),
+            rank,
+        ),
+        Question(
+            "The fairest candidate is {best}: {more}{price}.",
+            (
+                *(*pool, candidates.fairest),
+                lambda rows, taken: ~candidates.quicker(rows, taken),
+                lambda rows, taken: rows["torque"].map(
+                    lambda own: not isclose(own, taken["torque"], rel_tol=EQUAL)
+                ),
+            ),
+        ),
+        Question(
+            "{best} is tens of times quicker to evaluate than {taken}{at torque}.",
+            (*pool, candidates.quicker),
+            rank,
+        ),
+        Question(
+            "The paper's quartic has {over both}.",
+            (
+                lambda rows, taken: ~alike(rows, taken) & (rows["scheme"] == PAPERS),
+                lambda rows, _: np.isfinite(rows["torque_over_least"]),
+            ),
+        ),
+    )
+
 
 NONE = (
     Question(

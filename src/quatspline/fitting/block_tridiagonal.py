@@ -6,7 +6,6 @@ Elimination is by blocks, each pivoted by rows.  It takes one row after the othe
 that a Newton iteration assembles and eliminates in one sweep and never stores its matrix.  In the
 cyclic system, where row 0 also holds x_{n-1} and row n-1 also x_0, every row carries a further
 block for x_{n-1}, which a last 3x3 system then gives.  With n = 2 both neighbours are one unknown.
-
 """
 
 from __future__ import annotations
@@ -14,8 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from quatspline.kernels.jit import compiled, inlined
-from quatspline.kernels.values import Mat, Vec, put_vec, transposed, vec_at
-from quatspline.quaternion import FloatArray
+from quatspline.kernels.values import Mat, Vec, mat_at, put_mat, put_vec, transposed, vec_at
 
 # notation: work = (C, V, last, x): after `forward` x_k + C_k x_{k+1} + V_k x_{n-1} = rhs_k, where V
 # is used by cyclic systems only; last holds L, D, U of the cyclic system's last row.  Arrays (n, 9)
@@ -53,20 +51,6 @@ def solve(d, u, v):
 
 
 @inlined
-def block(array, k):
-    """Block k of an (n, 9) array."""
-    return Mat(vec_at(array[k], 0), vec_at(array[k], 3), vec_at(array[k], 6))
-
-
-@inlined
-def put_block(array, k, m):
-    """Write block k of an (n, 9) array."""
-    put_vec(array[k], 0, m.a)
-    put_vec(array[k], 3, m.b)
-    put_vec(array[k], 6, m.c)
-
-
-@inlined
 def workspace(n, cyclic):
     """Arrays for a system of n blocks: (C, V, last, x)."""
     return np.empty((n, 9)), np.empty((n if cyclic else 1, 9)), np.empty((3, 9)), np.empty((n, 3))
@@ -81,9 +65,9 @@ def forward(k, n, cyclic, lower, diagonal, upper, rhs, work):
     over, _, _, x = work
     if k > 0:
         rhs = rhs - lower @ vec_at(x[k - 1], 0)
-        diagonal = diagonal - lower * block(over, k - 1)
+        diagonal = diagonal - lower * mat_at(over[k - 1], 0)
     upper, rhs = solve(diagonal, upper, rhs)
-    put_block(over, k, upper)
+    put_mat(over[k], 0, upper)
     put_vec(x[k], 0, rhs)
 
 
@@ -92,21 +76,21 @@ def _forward_cyclic(k, n, lower, diagonal, upper, rhs, work):
     """As `forward`, with a further block for x_{n-1}; the last row is kept for the end."""
     over, border, last, x = work
     if k == n - 1:
-        put_block(last, 0, lower)
-        put_block(last, 1, diagonal)
-        put_block(last, 2, upper)
+        put_mat(last[0], 0, lower)
+        put_mat(last[1], 0, diagonal)
+        put_mat(last[2], 0, upper)
         put_vec(x[k], 0, rhs)
         return
     side = lower
     if k > 0:
         rhs = rhs - lower @ vec_at(x[k - 1], 0)
-        diagonal = diagonal - lower * block(over, k - 1)
-        side = -(lower * block(border, k - 1))
+        diagonal = diagonal - lower * mat_at(over[k - 1], 0)
+        side = -(lower * mat_at(border[k - 1], 0))
     if k == n - 2:  # the upper neighbour is x_{n-1} itself
         side = side + upper
-    put_block(border, k, solve(diagonal, side, rhs)[0])
+    put_mat(border[k], 0, solve(diagonal, side, rhs)[0])
     upper, rhs = solve(diagonal, upper, rhs)
-    put_block(over, k, upper)
+    put_mat(over[k], 0, upper)
     put_vec(x[k], 0, rhs)
 
 
@@ -118,63 +102,20 @@ def backward(n, cyclic, work):
         _substitute_cyclic(n, over, border, last, x)
     else:
         for k in range(n - 2, -1, -1):
-            put_vec(x[k], 0, vec_at(x[k], 0) - block(over, k) @ vec_at(x[k + 1], 0))
+            put_vec(x[k], 0, vec_at(x[k], 0) - mat_at(over[k], 0) @ vec_at(x[k + 1], 0))
 
 
 @compiled
 def _substitute_cyclic(n, over, border, last, x):
     """First x_k = x_k - V_k x_{n-1} with the C of (1) gone, then the last row, then all."""
     for k in range(n - 3, -1, -1):
-        c = block(over, k)
+        c = mat_at(over[k], 0)
         put_vec(x[k], 0, vec_at(x[k], 0) - c @ vec_at(x[k + 1], 0))
-        put_block(border, k, block(border, k) - c * block(border, k + 1))
-    lower, diagonal, upper = block(last, 0), block(last, 1), block(last, 2)
+        put_mat(border[k], 0, mat_at(border[k], 0) - c * mat_at(border[k + 1], 0))
+    lower, diagonal, upper = mat_at(last[0], 0), mat_at(last[1], 0), mat_at(last[2], 0)
     rhs = vec_at(x[n - 1], 0) - lower @ vec_at(x[n - 2], 0) - upper @ vec_at(x[0], 0)
-    diagonal = diagonal - lower * block(border, n - 2) - upper * block(border, 0)
+    diagonal = diagonal - lower * mat_at(border[n - 2], 0) - upper * mat_at(border[0], 0)
     final = solve(diagonal, upper, rhs)[1]
     for k in range(n - 1):
-        put_vec(x[k], 0, vec_at(x[k], 0) - block(border, k) @ final)
+        put_vec(x[k], 0, vec_at(x[k], 0) - mat_at(border[k], 0) @ final)
     put_vec(x[n - 1], 0, final)
-
-
-def _columns(blocks: FloatArray) -> FloatArray:
-    """Blocks (n, 3, 3) as rows (n, 9), column by column."""
-    columns = np.swapaxes(np.asarray(blocks, dtype=float), 1, 2)
-    return np.ascontiguousarray(columns).reshape(len(columns), 9)
-
-
-@compiled
-def _solve_system(lower, diagonal, upper, rhs, cyclic):
-    n = rhs.shape[0]
-    work = workspace(n, cyclic)
-    for k in range(n):
-        row = block(lower, k), block(diagonal, k), block(upper, k), vec_at(rhs[k], 0)
-        forward(k, n, cyclic, *row, work)
-    backward(n, cyclic, work)
-    return work[3]
-
-
-def solve_block_tridiagonal(
-    lower: FloatArray,
-    diagonal: FloatArray,
-    upper: FloatArray,
-    rhs: FloatArray,
-    *,
-    cyclic: bool = False,
-) -> FloatArray:
-    """Solve (1) for x (n, 3).
-
-    Parameters
-    ----------
-    lower, diagonal, upper
-        (n, 3, 3).  Row k couples x_{k-1}, x_k, x_{k+1}; ``lower[0]`` and ``upper[n - 1]`` do not
-        count in an open system and couple x_{n-1} and x_0 in a cyclic one, which needs n >= 2.
-    rhs
-        (n, 3).
-    """
-    n = rhs.shape[0]
-    if cyclic and n < 2:
-        raise ValueError(f"rhs has {n} blocks: a cyclic system needs at least 2")
-    blocks = [_columns(a) for a in (lower, diagonal, upper)]
-    solution: FloatArray = _solve_system(*blocks, np.ascontiguousarray(rhs, dtype=float), cyclic)
-    return solution

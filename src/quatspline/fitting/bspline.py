@@ -29,19 +29,16 @@ from quatspline.fitting.tangents import chart_velocity
 from quatspline.kernels.jacobians import inverse_right_jacobian
 from quatspline.kernels.jit import compiled, inlined
 from quatspline.kernels.quick import exp, log
-from quatspline.kernels.values import (
-    keyframe,
-    put_vec_column,
-    quat_column,
-    vec,
-    vec_column,
-)
+from quatspline.kernels.values import keyframe, put_vec_column, quat_column, vec, vec_column
 
 WINDOW = 4
 """Keyframes in the chart estimate of an end velocity: one more than the curve's order."""
 
 ROUNDING = 1e-14
 """Half angles below this are rounding."""
+
+TIES, QUADRATIC = 3, 1e-8
+"""Corrections by `tie` at most; each squares the gap, and after one of 1e-8 nothing is left."""
 
 
 @inlined
@@ -132,6 +129,17 @@ def tie(d, w):
         if gap @ gap > ROUNDING * ROUNDING:
             put_vec_column(w, j, step + inverse_right_jacobian(step, gap))
     return math.sqrt(worst)
+
+
+@compiled
+def settle(d, w, met):
+    """Increments that lead exactly from control to control, d_{k+1} = d_k exp(w_{k+1})."""
+    if not met:
+        increments(d, w)
+    else:
+        for _ in range(TIES):
+            if tie(d, w) <= QUADRATIC:
+                break
 
 
 @inlined

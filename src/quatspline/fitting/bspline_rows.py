@@ -5,7 +5,8 @@ interpolate where
 
     K_i^-1 exp(w_{i+1}) K_{i+1} = q_i^-1 q_{i+1}.                                              (1)
 
-Increments and controls are stored component first, so that the loops over knots vectorise.
+A problem is (targets, m, p, sign, clamped), x is (w, d, jets), see `newton`.  Increments and
+controls are stored component first, so that the loops over knots vectorise.
 """
 
 from __future__ import annotations
@@ -15,15 +16,17 @@ import math
 import numpy as np
 
 from quatspline.fitting.block_tridiagonal import backward, forward
-from quatspline.fitting.bspline import set_phantoms
+from quatspline.fitting.bspline import increments, set_phantoms
+from quatspline.fitting.newton import ROUNDING, STAGE, copy, newton
 from quatspline.kernels.jacobians import coefficients, spun
 from quatspline.kernels.jit import compiled, inlined
 from quatspline.kernels.quick import log
 from quatspline.kernels.scalars import FITTED, series, sinc
 from quatspline.kernels.values import (
-    Mat,
     Vec,
+    mat_at,
     polar_exp,
+    put_mat,
     put_quat_column,
     put_vec,
     quat_column,
@@ -36,6 +39,9 @@ BEFORE, AFTER, WHOLE = 0, 3, 6
 
 LOWER, OWN, UPPER, COLUMNS = 0, 9, 18, 64
 """Rows of a sheet of Newton's blocks, so many columns at a time."""
+
+FIRST = 0.25
+"""Share of the data's steps with which the homotopy begins."""
 
 
 @inlined
@@ -95,12 +101,13 @@ def set_controls(m, p, w, jets, targets, d):
 
 
 @compiled
-def look(problem, w, d, jets, misses):
+def look(problem, x, misses):
     """Misses of (2) at w: (sum of squares, largest as a rotation angle).
 
     In the frame of d_{k+1} they are ln(exp(-w_{k+1}) d_k^-1 d_{k+1}) with the controls (1).
     """
     targets, m, p, sign, clamped = problem
+    w, d, jets = x
     set_phantoms(w, sign != 0.0, clamped)
     set_jets(m, p, w, jets)
     set_controls(m, p, w, jets, targets, d)
@@ -153,22 +160,6 @@ def _turn_back(jet, k, v):
 
 
 @inlined
-def put_block(sheet, first, j, m):
-    """Write a block down column j of the sheet, from a row on."""
-    c = sheet[first:, j]
-    put_vec(c, 0, m.a)
-    put_vec(c, 3, m.b)
-    put_vec(c, 6, m.c)
-
-
-@inlined
-def block(sheet, first, j):
-    """The block in column j of the sheet, from a row on."""
-    c = sheet[first:, j]
-    return Mat(vec_at(c, 0), vec_at(c, 3), vec_at(c, 6))
-
-
-@inlined
 def set_knot_blocks(start, count, m, p, w, jets, sheet):
     """How K_k changes in its own left frame: dK = (P_k d(w_{k+1}) - M_k d(w_k)) K; here
 
@@ -179,7 +170,7 @@ def set_knot_blocks(start, count, m, p, w, jets, sheet):
     for k in range(count):
         turn = _turn_back(before, k, m[k] * _column(w, k))
         left = _jacobian(after, k, p[k], -_column(w, k + 1))
-        put_block(sheet, UPPER, k, turn * left)
+        put_mat(sheet[UPPER:, k], 0, turn * left)
 
 
 @inlined
@@ -191,20 +182,22 @@ def set_row_blocks(start, count, m, w, jets, sheet):
         step = _column(w, k + 1)
         back = _turn_back(whole, k, step)
         own = _jacobian(whole, k, 1.0, step) - _jacobian(before, k + 1, m[k + 1], step)
-        own = own - back * block(sheet, UPPER, k)  # read before anything is written, to vectorise
+        # read before anything is written, to vectorise
+        own = own - back * mat_at(sheet[UPPER:, k], 0)
         lower = back * _jacobian(before, k, m[k], _column(w, k))
-        put_block(sheet, LOWER, k, lower)
-        put_block(sheet, OWN, k, own)
+        put_mat(sheet[LOWER:, k], 0, lower)
+        put_mat(sheet[OWN:, k], 0, own)
 
 
 @compiled
-def assemble(problem, w, jets, work):
+def assemble(problem, x, work):
     """Solve Newton's system for (2); work's x holds the misses and then the move.
 
     Row k, in the frame of d_{k+1}, with R = R(exp(w_{k+1}))^T:
     R M_k x_k + (Jr(w_{k+1}) - M_{k+1} - R P_k) x_{k+1} + P_{k+1} x_{k+2} = miss_k.
     """
     _, m, p, sign, _ = problem
+    w, _, jets = x
     n, misses = w.shape[1] - 2, work[3]
     sheet = np.empty((27, COLUMNS))
     for start in range(0, n, COLUMNS - 1):
@@ -212,11 +205,43 @@ def assemble(problem, w, jets, work):
         set_knot_blocks(start, count + 1, m, p, w, jets, sheet)
         set_row_blocks(start, count, m, w, jets, sheet)
         for j in range(count):
-            lower, own, upper = (
-                block(sheet, LOWER, j),
-                block(sheet, OWN, j),
-                block(sheet, UPPER, j + 1),
-            )
-            rhs = vec_at(misses[start + j], 0)
+            lower, own = mat_at(sheet[LOWER:, j], 0), mat_at(sheet[OWN:, j], 0)
+            upper, rhs = mat_at(sheet[UPPER:, j + 1], 0), vec_at(misses[start + j], 0)
             forward(start + j, n, sign != 0.0, lower, own, upper, rhs, work)
     backward(n, sign != 0.0, work)
+
+
+_DESCEND, _SOLVE = newton(look, assemble)
+
+
+@inlined
+def _free(problem, w):
+    """Whether the problem is cyclic, and what moves: see `newton`."""
+    n, cyclic = w.shape[1] - 2, problem[3] != 0.0
+    return cyclic, (1, n + 1, n if cyclic else n + 1, math.inf)
+
+
+@compiled
+def descend(problem, x, tolerance, by_change, limit):
+    """Newton's method from the increments in x: (updates, residual, change, met)."""
+    return _DESCEND(problem, x, *_free(problem, x[0]), tolerance, by_change, limit)
+
+
+@compiled
+def solve(problem, x, tolerance, by_change, limit):
+    """Newton from the steps' logarithms, then by homotopy: (updates, change, met).
+
+    Gives the keyframes themselves as controls where it fails.
+    """
+    w, d, _ = x
+    increments(problem[0], w)
+    start = w[:, 1:-1].copy()
+    updates, worst, change, met = descend(problem, x, tolerance, by_change, min(STAGE, limit))
+    if not met and worst > ROUNDING and updates < limit:
+        given = *_free(problem, w), tolerance, by_change, limit - updates
+        more, worst, change, met = _SOLVE(problem, x, start, FIRST, *given)
+        updates += more
+        if not met and worst > ROUNDING:
+            copy(problem[0], d, 1.0)
+            change = 0.0
+    return updates, change, met

@@ -20,6 +20,7 @@ import numpy as np
 
 from quatspline.families.cumulative import SIDE, set_base, set_turn
 from quatspline.families.polynomials import bound, hermite
+from quatspline.fitting.bspline import spacing
 from quatspline.kernels.jit import REACH, compiled, fit_kernel, inlined
 from quatspline.kernels.values import (
     keyframe,
@@ -56,16 +57,6 @@ def _put(d, j, p, q):
 
 
 @inlined
-def _spacing(h, i, closed):
-    """h_i, wrapped or, beyond the ends of an open curve, equal to its neighbour."""
-    if i < 0:
-        return h[h.size - 1] if closed else h[0]
-    if i >= h.size:
-        return h[0] if closed else h[h.size - 1]
-    return h[i]
-
-
-@inlined
 def _exponents(h0, h1, h2, k):
     """f_1, f_2, f_3 with their bounds: (2) and (3) per unit of D, times h_1 and h_1^2."""
     left, right = h1 / (h0 + h1), h1 / (h1 + h2)
@@ -84,11 +75,11 @@ def _set(c, k, d, j, f):
 def FIT(q, h, closed, sign, parameters, segments, report):
     """Constants of (1); parameters[0] is kappa."""
     k, d = 2.0 * parameters[0], _steps(q, sign, closed)
-    h0, h1, h2 = _spacing(h, -1, closed), h[0], _spacing(h, 1, closed)
+    h0, h1, h2 = spacing(h, -1, closed, False), h[0], spacing(h, 1, closed, False)
     f, m = _exponents(h0, h1, h2, k)
     reach = 0.0
     for i in range(h.size):
-        after = _spacing(h, i + 1, closed)
+        after = spacing(h, i + 1, closed, False)
         if i > 0 and not (h1 == h0 and h[i] == h1 and after == h2):
             h0, h1, h2 = h[i - 1], h[i], after
             f, m = _exponents(h0, h1, h2, k)

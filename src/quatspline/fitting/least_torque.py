@@ -14,12 +14,7 @@ import math
 
 import numpy as np
 
-from quatspline.families.rotation_vector import (
-    SIZE,
-    half_acceleration,
-    jet,
-    set_end_rates,
-)
+from quatspline.families.rotation_vector import SIZE, half_acceleration, jet, set_end_rates
 from quatspline.kernels.jacobians import coefficients, inverse_jacobian_matrix
 from quatspline.kernels.jit import CHANGE, ITERATIONS, REACH, compiled, inlined
 from quatspline.kernels.values import Quat, exp, log, put_quat, put_vec, quat_at, unit, vec_at

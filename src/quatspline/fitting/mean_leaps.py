@@ -31,9 +31,10 @@ def share_a_half(points):
 def leaps(points, before, c, after):
     """Whether the mean leaps on a segment: it moves by LEAP however short the step is made."""
     u, step = 0.0, STRIDE
-    here = mean(points, basis(before, c, after, u))
+    w, _, _ = basis(before, c, after, u)
+    here = mean(points, w)
     while u < 1.0:
-        w = basis(before, c, after, min(1.0, u + step))
+        w, _, _ = basis(before, c, after, min(1.0, u + step))
         there = mean(points, w)
         theta, _, _ = arc(here, there)
         longest = CAREFUL if norm(mixed(w, points)) < FAINT else STRIDE

@@ -67,8 +67,8 @@ def _ahead(v, d):
 @inlined
 def clipped(a, v, n, p, l0, l1, h0, h1, slack):
     """a within (2) along both steps: the mean of both orders."""
-    n0, n1 = _interval(max(v @ n, 0.0), l0, slack)
-    p0, p1 = _interval(max(v @ p, 0.0), l1, slack)
+    n0, n1 = interval(max(v @ n, 0.0), l0, slack)
+    p0, p1 = interval(max(v @ p, 0.0), l1, slack)
     n0, n1, p0, p1 = -n1 / h0, -n0 / h0, p0 / h1, p1 / h1
     one = _clamped(_clamped(a, n, n0, n1), p, p0, p1)
     other = _clamped(_clamped(a, p, p0, p1), n, n0, n1)
@@ -76,7 +76,7 @@ def clipped(a, v, n, p, l0, l1, h0, h1, slack):
 
 
 @inlined
-def _interval(v, l, slack):
+def interval(v, l, slack):
     """The least and the largest h a after a keyframe by (2); before it, negated."""
     held = 1.5 * slack * l
     least = min(max(held - GRADUAL * (HALF * (1.0 - slack) * l - v), 0.0), held)

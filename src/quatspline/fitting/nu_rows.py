@@ -20,23 +20,35 @@ from __future__ import annotations
 
 import math
 
-from quatspline.fitting.block_tridiagonal import backward, forward
+import numpy as np
+
+from quatspline.fitting.block_tridiagonal import backward, forward, workspace
 from quatspline.fitting.bspline import set_phantoms
+from quatspline.fitting.newton import ease, newton
 from quatspline.kernels.jacobians import inverse_jacobian_matrix, jacobian_matrix, turn_matrix
-from quatspline.kernels.jit import compiled, inlined
+from quatspline.kernels.jit import CHANGE, ITERATIONS, RESIDUAL, compiled, inlined
 from quatspline.kernels.quick import exp, log
 from quatspline.kernels.values import (
+    keyframe,
+    put_quat,
     put_quat_column,
     put_vec,
     put_vec_column,
+    quat_at,
     quat_column,
     vec_at,
     vec_column,
 )
 
 # notation: a problem is (targets, a, mu, delta, f, cyclic): keyframes (4, N + 1) and the weights at
-# every knot, those of the ends of open data such that d is the keyframe; x is (g, w, d), where
-# g (3, N + 1) of open data is 0 at both ends, w (3, N + 2) and d (4, N + 1).
+# every knot, those of the ends of open data such that d is the keyframe; x is (g, d, w), where
+# g (3, N + 1) of open data is 0 at both ends, d (4, N + 1) and w (3, N + 2).
+
+ASTRAY = 0.5 * math.pi
+"""Misses in rad from which a descent might end at another solution than the nearest."""
+
+FLAT = 2.0**-20
+"""Share of the data's steps at which the equations are linear to 1e-6."""
 
 
 @inlined
@@ -57,7 +69,7 @@ def leg_start(problem, g, k):
 def _set_polygon(problem, x):
     """w of (2) and d; returns the largest |arc|^2 from a keyframe to the ends of its legs."""
     _, a, _, delta, f, cyclic = problem
-    g, w, d = x
+    g, d, w = x
     n, longest = g.shape[1] - 1, 0.0
     if cyclic:
         put_vec_column(g, n, vec_column(g, 0))
@@ -80,7 +92,7 @@ def look(problem, x, misses):
     segment cannot follow.
     """
     _, a, mu, _, _, cyclic = problem
-    g, w, _ = x
+    g, _, w = x
     longest = _set_polygon(problem, x)
     total = worst = 0.0
     first = 0 if cyclic else 1
@@ -105,7 +117,7 @@ def _moving(f, v):
 def _segment_blocks(problem, x, k):
     """V and U of dw_k = V dg_{k-1} + U dg_k, from (2)."""
     _, _, _, delta, f, _ = problem
-    g, w, _ = x
+    g, _, w = x
     step = f[k] * vec_column(w, k)
     start = _moving(1.0 - delta[k - 1], vec_column(g, k - 1))
     end = -_moving(-delta[k], vec_column(g, k))
@@ -122,7 +134,7 @@ def assemble(problem, x, work):
     A V_k x_{k-1} + (A U_k + B V_{k+1} - Jr(g_k)) x_k + B U_{k+1} x_{k+1} = -miss_k.
     """
     _, a, mu, _, _, cyclic = problem
-    g, w, _ = x
+    g, _, w = x
     n, first = g.shape[1] - 1, 0 if cyclic else 1
     v, u = _segment_blocks(problem, x, n if cyclic else 1)
     for k in range(first, n):
@@ -135,3 +147,63 @@ def assemble(problem, x, work):
         rhs = -vec_at(work[3][k - first], 0)
         forward(k - first, n - first, cyclic, lower, own, after * u, rhs, work)
     backward(n - first, cyclic, work)
+
+
+_, _SOLVE = newton(look, assemble)
+
+
+@compiled
+def _set_flat(problem, x, start):
+    """The solution g of the flat equations, by one step from 0."""
+    eased = np.empty(problem[0].shape)
+    ease(problem[0], FLAT, eased)
+    flat, cyclic = (eased, *problem[1:]), problem[5]
+    work = workspace(max(start.shape[1], 1), cyclic)
+    look(flat, x, work[3])
+    if start.shape[1] > 0:
+        assemble(flat, x, work)
+    for k in range(start.shape[1]):
+        put_vec_column(start, k, (1.0 / FLAT) * vec_at(work[3][k], 0))
+
+
+@compiled
+def _pose(q, weights, closed, sign):
+    """The problem for weights (lambda, mu, delta) of every keyframe, (n, 3)."""
+    n, count = q.shape[0], q.shape[0] + (1 if closed else 0)
+    targets, rows = np.empty((4, count)), np.zeros((4, count))
+    for i in range(count):
+        put_quat_column(targets, i, keyframe(q, i, sign))
+        if closed or 0 < i < n - 1:
+            k = i % n
+            rows[0, i], rows[1, i], rows[2, i] = 1.0 - weights[k, 0], weights[k, 1], weights[k, 2]
+        if i > 0:
+            rows[3, i] = 1.0 - rows[0, i] - rows[1, i - 1]
+    return targets, rows[0], rows[1], rows[2], rows[3], closed
+
+
+@compiled
+def newton_legs(q, weights, closed, sign, tolerance, by_change, limit, legs, report):
+    """R_i and L_{i+1} of every segment i, legs (segments, 2, 4); fills a fit kernel's report.
+
+    Newton's method starts from the solution of the flat equations: others than the one that grows out of
+    small steps between keyframes have turns to and fro.  Any g gives legs that meet in keyframes with
+    one velocity; the residual is by how much the control quaternions differ that the legs on both
+    sides of a keyframe ask for.
+    """
+    count, first = legs.shape[0], 0 if closed else 1
+    x = np.zeros((3, count + 1)), np.empty((4, count + 1)), np.empty((3, count + 2))
+    problem, start = _pose(q, weights, closed, sign), np.empty((3, count - first))
+    _set_flat(problem, x, start)
+    free = first, count, count - first + 1, ASTRAY
+    report[ITERATIONS], report[RESIDUAL], report[CHANGE], _ = _SOLVE(
+        problem, x, start, 1.0, closed, free, tolerance, by_change, limit
+    )
+    g, _, w = x
+    for i in range(count):
+        right, left = leg_start(problem, g, i), leg_end(problem, g, i + 1)
+        if not closed and i == 0:
+            right = quat_at(q[0], 0) * exp(weights[0, 1] * vec_column(w, 1))
+        if not closed and i == count - 1:
+            left = quat_at(q[count], 0) * exp((weights[count, 0] - 1.0) * vec_column(w, count))
+        put_quat(legs[i, 0], 0, right)
+        put_quat(legs[i, 1], 0, left)

@@ -175,7 +175,7 @@ def _turn(q: FloatArray) -> FloatArray:
 
 def _orientations(curve: Curve, t: FloatArray) -> FloatArray:
     """At times of any shape since the first keyframe."""
-    return curve._orientation(t.reshape(-1)).reshape(*t.shape, 4)
+    return curve.orientations(t.reshape(-1)).reshape(*t.shape, 4)
 
 
 def _suspects(corner: FloatArray) -> IntArray:

@@ -18,7 +18,7 @@ def rates(curve: Curve, t: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Angular velocity and acceleration (m, 3) at once: half the work where they are numerical."""
     if 1 in curve.orders and 2 in curve.orders:
         return curve(t, 1), curve(t, 2)
-    return stencil.rates(curve._orientation, curve.since(t), curve.keyframes.knots)
+    return stencil.rates(curve.orientations, curve.since(t), curve.keyframes.knots)
 
 
 def analytic(curve: Curve) -> bool:
@@ -39,4 +39,4 @@ def rates_since(curve: Curve, since: FloatArray) -> tuple[FloatArray, FloatArray
     """
     if closed_forms(curve):
         return curve.inner(since, 1)[:, 0], curve.inner(since, 2)[:, 0]
-    return stencil.rates(curve._orientation, since, curve.keyframes.knots)
+    return stencil.rates(curve.orientations, since, curve.keyframes.knots)

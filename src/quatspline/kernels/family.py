@@ -19,11 +19,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from types import FunctionType
 from typing import Any
 
 from quatspline.kernels import loops
-from quatspline.kernels.jit import CONSTANTS, ROWS, Kernel, inlined
+from quatspline.kernels.jit import CONSTANTS, ROWS, Kernel, bound, inlined
 from quatspline.kernels.values import restored, vec
 
 Kernels = tuple[Kernel, Kernel, Kernel]
@@ -77,19 +76,19 @@ def family(
     """
     count = exactly
     if jet is not None:
-        velocity, acceleration = (inlined(_bound(f, FUNCTION=jet)) for f in (_first, _second))
+        velocity, acceleration = (inlined(bound(f, FUNCTION=jet)) for f in (_first, _second))
         count = whole
     if velocity is None or acceleration is None:
         raise TypeError("a family needs a jet, or a velocity and an acceleration")
     near = (
         _orientations(point, spare),
         Kernel(
-            partial(_bound, loops.velocity, FUNCTION=velocity, COUNT=count),
+            partial(bound, loops.velocity, FUNCTION=velocity, COUNT=count),
             "sample",
             lambda c, u, rate: (2.0 * rate) * velocity(c, u),
         ),
         Kernel(
-            partial(_bound, loops.acceleration, FUNCTION=acceleration, COUNT=count),
+            partial(bound, loops.acceleration, FUNCTION=acceleration, COUNT=count),
             "sample",
             lambda c, u, rate: (2.0 * rate * rate) * acceleration(c, u),
         ),
@@ -100,9 +99,9 @@ def family(
 def _orientations(point: Callable[..., Any], spare: Callable[..., Any] | None) -> Kernel:
     """The kernel of orientations, restored to unit length where there is something to spare."""
     if spare is None:
-        make = partial(_bound, loops.orientation, FUNCTION=point)
+        make = partial(bound, loops.orientation, FUNCTION=point)
         return Kernel(make, "sample", lambda c, u, rate: point(c, u))
-    make = partial(_bound, loops.unit_orientation, FUNCTION=point, SPARE=spare)
+    make = partial(bound, loops.unit_orientation, FUNCTION=point, SPARE=spare)
     return Kernel(make, "sample", lambda c, u, rate: restored(point(c, u), spare(c, u)))
 
 
@@ -120,26 +119,6 @@ def whole(n):
     digits would depend on its neighbours.  BLOCK is a multiple, so that the sheet has room.
     """
     return (n + 7) & -8
-
-
-def _bound(template: Callable[..., Any], **functions: Callable[..., Any]) -> Callable[..., Any]:
-    """A copy of a template with functions as globals, in the file and at the line of the first."""
-    first, *_ = functions.values()
-    name = "_".join([*(called(f) for f in functions.values()), template.__name__])
-    code = template.__code__.replace(
-        co_filename=first.__code__.co_filename,
-        co_firstlineno=first.__code__.co_firstlineno,
-        co_name=name,
-        co_qualname=name,
-    )
-    return FunctionType(code, {**template.__globals__, **functions}, name)
-
-
-def called(function: Callable[..., Any]) -> str:
-    """A name that tells a function from others of the same code: its own, and what it closes over."""
-    held = (cell.cell_contents for cell in function.__closure__ or ())
-    parts = (called(x) if isinstance(x, FunctionType) else repr(x) for x in held)
-    return "_".join([function.__name__, *parts])
 
 
 FUNCTION: Any = None

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
+from types import FunctionType
 from typing import Any, Literal
 
 ROOMS = ("engines", "kernels", "families", "fitting", "proposed")
@@ -42,6 +43,8 @@ ITERATIONS, CHANGE, RESIDUAL, REACH = range(4)
 UNREPORTED = -1.0
 """A reach that was not written: kernels for near angles must not be taken by an oversight."""
 
+OVERWRITTEN = -2.0
+"""In the place of a reach: what follows the constants was written to."""
 
 INLINED: list[Callable[..., Any]] = []
 """Functions that compiled code inlines, in the order of their definition."""
@@ -125,3 +128,27 @@ def fit_kernel(function: Callable[..., Any]) -> Kernel:
 def rows_of(sheet):
     """The sheet as an array (ROWS, BLOCK): in plain Python it is one."""
     return sheet
+
+
+def bound(template: Callable[..., Any], **functions: Callable[..., Any]) -> Callable[..., Any]:
+    """A copy of a template with functions as globals, in the file and at the line of the first.
+
+    numba's cache cannot tell closures that hold functions apart; it can tell such copies.
+    """
+    first, *_ = (getattr(f, "python", f) for f in functions.values())
+    name = "_".join([*(called(f) for f in functions.values()), template.__name__])
+    code = template.__code__.replace(
+        co_filename=first.__code__.co_filename,
+        co_firstlineno=first.__code__.co_firstlineno,
+        co_name=name,
+        co_qualname=name,
+    )
+    return FunctionType(code, {**template.__globals__, **functions}, name)
+
+
+def called(function: Callable[..., Any]) -> str:
+    """A name that tells a function from others of the same code: its own, and what it closes over."""
+    function = getattr(function, "python", function)
+    held = (cell.cell_contents for cell in function.__closure__ or ())
+    parts = (called(x) if isinstance(x, FunctionType) else repr(x) for x in held)
+    return "_".join([function.__name__, *parts])

@@ -147,6 +147,12 @@ def vec_at(c, k):
 
 
 @inlined
+def mat_at(c, k):
+    """The matrix at places k ... k + 8 of a row, column by column."""
+    return Mat(vec_at(c, k), vec_at(c, k + 3), vec_at(c, k + 6))
+
+
+@inlined
 def put_quat(c, k, q):
     """Write a quaternion to places k ... k + 3 of a row."""
     c[k], c[k + 1], c[k + 2], c[k + 3] = q.w, q.x, q.y, q.z
@@ -156,6 +162,14 @@ def put_quat(c, k, q):
 def put_vec(c, k, v):
     """Write a vector to places k ... k + 2 of a row."""
     c[k], c[k + 1], c[k + 2] = v.x, v.y, v.z
+
+
+@inlined
+def put_mat(c, k, m):
+    """Write a matrix to places k ... k + 8 of a row."""
+    put_vec(c, k, m.a)
+    put_vec(c, k + 3, m.b)
+    put_vec(c, k + 6, m.c)
 
 
 @inlined

@@ -33,6 +33,7 @@ SCRIPTS = (
 TOPICS = {
     "reproduction": "What reproduces",
     "protocol": "What is protocol",
+    "warning": "Before any advice",
     "recommendation": "Recommendation",
 }
 MAKERS: dict[str, Callable[[Folder], Any]] = {

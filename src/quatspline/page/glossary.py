@@ -105,6 +105,14 @@ GLOSSARY: dict[str, Column] = {
     "over_degrees": Column("worst way beyond the ends of a step", "degrees", "less"),
     "wander_median": Column("median angle from the keyframe during a hold", "degrees", "less"),
     "wander_worst": Column("largest angle from the keyframe during a hold", "degrees", "less"),
+    "compare.excursion": Column("largest angle off the arcs between keyframes", "degrees", "less"),
+    "hold_rotation": Column("largest angle from the keyframe during a hold", "degrees", "less"),
+    "peak_rate": Column("largest angular velocity", "degrees/t", "less"),
+    "peak_acceleration": Column("largest angular acceleration", "degrees/t²", "less"),
+    "compare.curvature": Column("curvature energy of the path", "1/rad", "less"),
+    "compare.support": Column("keyframes that shape a segment"),
+    "compare.lookahead": Column("keyframes after a segment's own two that shape it"),
+    "compare.noise": Column("noise told from the keyframes, about each axis", "degrees"),
     "curvature_median": Column(
         "median of curvature energy over the least of no longer paths", "", "less"
     ),

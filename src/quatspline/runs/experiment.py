@@ -192,8 +192,9 @@ def fingerprint(runs: dict[str, Run]) -> str:
 
 
 def sources() -> str:
-    """A hash of the package's files, of all schemes, of all experiments and of the clips they run on."""
-    paths = {path for path in catalogue.PACKAGE.rglob("*") if "__pycache__" not in path.parts}
+    """A hash of the package's own files, of all schemes, of all experiments and of the clips they run on."""
+    others = {"__pycache__", "node_modules"}
+    paths = {path for path in catalogue.PACKAGE.rglob("*") if others.isdisjoint(path.parts)}
     paths |= {path for folder in catalogue.folders() for path in folder.glob("*.py")}
     folders = {path.parent for path in files().values()}  # experiments may share private modules
     paths |= {path for folder in folders for path in folder.glob("*.py")}

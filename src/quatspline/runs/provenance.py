@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.metadata
 import os
 import platform
 import subprocess
@@ -12,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from quatspline import __version__
+from quatspline.peers import installed
 
 LIBRARIES = ("numpy", "scipy", "numba", "pandas", "matplotlib")
 
@@ -34,7 +34,7 @@ def versions() -> dict[str, str]:
     schemes = (item.scheme for item in found().values())
     peers = {scheme.peer for scheme in schemes if scheme is not None and scheme.peer is not None}
     known = {"python": platform.python_version(), "quatspline": __version__}
-    return known | {name: importlib.metadata.version(name) for name in (*LIBRARIES, *sorted(peers))}
+    return known | {name: installed.version(name) for name in (*LIBRARIES, *sorted(peers))}
 
 
 def cpu_model() -> str:

@@ -8,7 +8,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache
 from types import FrameType
 
@@ -62,10 +62,12 @@ def ending(tell: Callable[[int], object]) -> Iterator[None]:
 
 def _cut_off_after(seconds: float, status: int, tell: Callable[[int], object]) -> None:
     def cut() -> None:
-        end_workers()
-        tell(status)
-        sys.stderr.flush()
-        os._exit(status)
+        try:
+            end_workers()
+            tell(status)
+            sys.stderr.flush()
+        finally:
+            os._exit(status)
 
     timer = threading.Timer(seconds, cut)
     timer.daemon = True
@@ -77,7 +79,9 @@ def end_workers() -> None:
     from multiprocessing import active_children
 
     for worker in active_children():
-        worker.kill()
+        if worker.pid is not None:
+            with suppress(ProcessLookupError):  # loky's processes have no method for it
+                os.kill(worker.pid, getattr(signal, "SIGKILL", signal.SIGTERM))
 
 
 @contextmanager

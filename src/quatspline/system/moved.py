@@ -19,7 +19,7 @@ MOVED = {
     "families.bezier": "fitting.bezier",
     "families.block_tridiagonal": "fitting.block_tridiagonal",
     "families.bspline": "fitting.bspline",
-    "families.bspline_newton": "fitting.bspline_newton",
+    "families.bspline_newton": "fitting.newton",
     "families.bspline_rows": "fitting.bspline_rows",
     "families.driver": "engines.driver",
     "families.four_keyframes": "fitting.four_keyframes",

@@ -21,9 +21,6 @@ from quatspline.segments import SegmentCurve
 Protocol = Literal["per-frame", "solve-once"]
 PROTOCOLS: tuple[Protocol, ...] = ("per-frame", "solve-once")
 
-SLACK = np.inf
-"""Frames lie within the domain but for rounding: there is nothing to refuse."""
-
 
 def frames(
     scheme: type[Curve], keyframes: Keyframes, t: FloatArray, protocol: Protocol, **options: Any
@@ -41,14 +38,14 @@ def frames(
 def _interpreted(
     make: Callable[[], Curve], keyframes: Keyframes, t: FloatArray, protocol: Protocol
 ) -> Callable[[int], FloatArray]:
-    out, origin = np.empty((t.size, 1, 4)), float(keyframes.times[0])
+    out, since = np.empty((t.size, 4)), t - float(keyframes.times[0])
     singly = [slice(i, i + 1) for i in range(t.size)]
     parts = singly if protocol == "per-frame" else [slice(None)]
 
     def generate(repeats: int) -> FloatArray:
         for _ in range(repeats):
             for part in parts:
-                make()._evaluate(t[part], origin, SLACK, 0, out[part].reshape(-1), 1)
-        return out[:, 0]
+                out[part] = make().inner(since[part])[:, 0]
+        return out
 
     return generate

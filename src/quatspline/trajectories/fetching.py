@@ -160,7 +160,7 @@ def _try(
         silent[host].append(remote.name)
         return
     try:
-        _fetch(path, address, remote)
+        download(path, address, remote)
         found.new.append(remote.name)
     except _Silent:
         silent[host] = [remote.name]
@@ -168,7 +168,7 @@ def _try(
         found.failures.append(f"{remote.name}: {failure}")
 
 
-def _fetch(path: Path, address: str, remote: Remote) -> None:
+def download(path: Path, address: str, remote: Remote) -> None:
     """Fetch a file.
 
     Raises
