@@ -90,8 +90,7 @@ def schemes_block() -> str:
     rows, pages = [], derivations()
     for name, item in found().items():
         s = item.scheme
-        if s is None:
-            rows.append(f"| `{name}` | n/a: {item.problem} | | | | |")
+        if s is None:  # not installed here: the page says where all are named
             continue
         support = "all keyframes" if s.support is None else f"{s.support} keyframes"
         link = DOCS / "peers.md" if s.peer else pages.get(name)
