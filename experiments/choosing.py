@@ -1,4 +1,4 @@
-"""One row a scheme, one column a question: derived from the other tables of the folder."""
+"""One row per scheme, one column a question: derived from the other tables of the folder."""
 
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
@@ -7,12 +7,11 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from quatspline.catalogue import found, version
+from quatspline.catalogue import called, found, version
 from quatspline.claims.claim import DEPARTS, UNDECIDED
-from quatspline.figures import style
+from quatspline.figures import direct, named, style
 from quatspline.findings import decisions
 from quatspline.findings.quotes import Reader
-from quatspline.quaternion import FloatArray
 from quatspline.runs.experiment import FULL, QUICK, Run
 from quatspline.trajectories.sets import COUNT
 
@@ -70,8 +69,6 @@ COSTS = {
 COUNTED = {"exps": 1.0, "logs": 1.0, "slerps": 2.0}  # a slerp is one of each
 LEAST_EXCESS = 1e-4
 """Excess of torque below this is drawn there."""
-GAP, ROOM = 0.034, 3.0
-"""Between names, as a share of the height; and beside the slowest scheme, for lines to names."""
 
 
 def derive(run: Run, read: Reader) -> pd.DataFrame:
@@ -232,56 +229,34 @@ SOURCES: dict[str, Callable[[pd.DataFrame], pd.DataFrame]] = {
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    fig, panels = style.axes(style.PAGE, 4.6)
+    fig, panels = style.axes(style.PAGE, 4.2)
     ax = panels[0, 0]
     shown = table[np.isfinite(table["torque"]) & table["nanoseconds_per_sample"].notna()]
     shown = shown.assign(excess=(shown["torque"] - 1.0).clip(lower=LEAST_EXCESS))
-    for _, row in shown.iterrows():
-        looks = style.scheme_style(row["scheme"]) | {"linestyle": ""}
-        x, y = row["nanoseconds_per_sample"], row["excess"]
-        if row["pareto"] == "yes":
-            ax.plot(x, y, "o", ms=10, mfc="none", mec="#999999", mew=0.8)
-        if row["times_pareto"] == "yes":
-            ax.plot(x, y, "s", ms=12, mfc="none", mec="#999999", mew=0.8)
-        ax.plot(x, y, **looks, ms=5)
-    ax.set(xscale="log", yscale="log", xlabel="nanoseconds a sample")
+    points = [_drawn(ax, row) for _, row in shown.iterrows()]
+    ax.set(xscale="log", yscale="log", xlabel="nanoseconds per sample")
     ax.set_ylabel("median excess of torque energy over the minimum")
-    ax.set_xlim(right=ROOM * ax.get_xlim()[1])
-    _labels(ax, shown)
+    fig.draw_without_rendering()
+    fig.set_layout_engine("none")
+    direct.label_points(ax, [point for point in points if point is not None])
     return fig
 
 
-def _labels(ax: Any, shown: pd.DataFrame) -> None:
-    """Names in a column at the right, near the height of their points, each with a line to its own."""
-    lo, hi = np.log(ax.get_ylim())
-    rows = shown.sort_values(["excess", "nanoseconds_per_sample", "scheme"])
-    heights = _spread((np.log(rows["excess"].to_numpy()) - lo) / (hi - lo), GAP)
-    for height, (_, row) in zip(heights, rows.iterrows(), strict=True):
-        ax.annotate(
-            row["scheme"],
-            (row["nanoseconds_per_sample"], row["excess"]),
-            (1.04, height),
-            textcoords="axes fraction",
-            va="center",
-            fontsize=7,
-            arrowprops={"arrowstyle": "-", "color": "#bbbbbb", "lw": 0.4, "relpos": (0.0, 0.5)},
-        )
-
-
-def _spread(wanted: FloatArray, gap: float) -> list[float]:
-    """Heights, ascending, that keep a gap and stay in [0, 1] as near to those wanted as that goes."""
-    heights: list[float] = []
-    for i, height in enumerate(wanted):
-        highest = 1.0 - gap * (len(wanted) - 1 - i)
-        lowest = heights[-1] + gap if heights else 0.0
-        heights.append(max(lowest, min(float(height), highest)))
-    return heights
+def _drawn(ax: Any, row: pd.Series) -> direct.End | None:
+    """Draw a scheme's point; what is written beside it, if anything is."""
+    name, x, y = row["scheme"], row["nanoseconds_per_sample"], row["excess"]
+    looks = named.looks(name) | {"linestyle": "", "ms": 5}
+    if best := row["times_pareto"] == "yes":
+        ax.plot(x, y, "o", ms=10, mfc="none", mec="#444444", mew=0.8)
+    ax.plot(x, y, **looks)
+    if not best and name not in named.NAMED:
+        return None
+    return direct.End(x, y, called(name), looks["color"] if name in named.NAMED else "#555555")
 
 
 def caption(table: pd.DataFrame) -> str:
     return (
         "Torque energy over the minimum (median of the committed sets, minus 1; below 1e-4 drawn there) against the "
-        "time of a sample; both are better when less. Hollow: third-party libraries. In a square: on the front of "
-        "torque, order and the two timings; ringed: on that of torque, order and counted operations. Schemes of "
-        "infinite energy are left out."
+        f"time of a sample; both are better when less. {named.SAID} Ringed: on the front of torque, order and the two "
+        "timings. Schemes of infinite energy are left out."
     )

@@ -1,4 +1,4 @@
-"""SegmentCurve: curves that are one row of constants a segment, in plain Python or compiled.
+"""SegmentCurve: curves that are one row of constants per segment, in plain Python or compiled.
 
 A scheme of this kind supplies a fit kernel (keyframes -> constants) or computes the constants
 itself, and names the family whose functions evaluate them.  What is compiled, one driver

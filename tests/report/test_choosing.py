@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from quatspline.catalogue import load
+from quatspline.catalogue import called, load
 from quatspline.cli import running
 from quatspline.figures import style
 from quatspline.findings import decisions
@@ -282,7 +283,7 @@ def test_derived_experiments_come_last() -> None:
 
 
 def test_names_in_the_figure_keep_apart(module, folder: Path) -> None:
-    """Five of nearly one height, three of them at the top, and one far below."""
+    """Six of one time, three of them of nearly one height."""
     names = ["slerp", "quartic", "local-quintic", "kim", "squad", "nielson"]
     excess = [1e-3, 0.30, 0.31, 0.9, 0.99, 1.0]
     fair = {"scheme": names, "median": 1.0 + np.array(excess), "worst": 3.0, "data": "committed"}
@@ -293,16 +294,13 @@ def test_names_in_the_figure_keep_apart(module, folder: Path) -> None:
     table = module.derive(Run(quick=True), reader(folder))
     with style.house():
         axes = module.draw(table).axes[0]
-    heights = [text.xyann[1] for text in axes.texts]
-    assert [text.get_text() for text in axes.texts] == names
-    assert np.diff(heights).min() >= module.GAP - 1e-12
-    assert heights[-1] <= 1.0
-    low, high = np.log(axes.get_ylim())
-    assert heights[0] == pytest.approx((np.log(excess[0]) - low) / (high - low))  # has room
+    assert {text.get_text() for text in axes.texts} == set(map(called, names))
+    boxes = [text.get_window_extent() for text in axes.texts]
+    assert not any(a.overlaps(b) for a, b in combinations(boxes, 2))
 
 
 def test_schemes_of_infinite_energy_are_not_drawn(module, folder: Path) -> None:
     table = module.derive(Run(quick=True), reader(folder))
     with style.house():
         names = {text.get_text() for text in module.draw(table).axes[0].texts}
-    assert names == {"quartic", "local-quintic"}
+    assert names == {"quartic", called("local-quintic")}

@@ -1,6 +1,6 @@
 """Choosing: which schemes are on a Pareto front, and what follows for somebody who has to take one.
 
-Works on a table with one row a scheme, from whichever measurements it was made; a column that is not there
+Works on a table with one row per scheme, from whichever measurements it was made; a column that is not there
 or is empty leaves out what would rest on it.
 """
 
@@ -34,7 +34,7 @@ def pareto(table: pd.DataFrame, criteria: Mapping[str, int]) -> pd.Series:
 
     Parameters
     ----------
-    table : one row a scheme
+    table : one row per scheme
     criteria : columns, with 1 where more is better and -1 where less is
 
     Returns
@@ -115,7 +115,7 @@ QUESTIONS = (
         "torque",
         MET,
         *(TORQUE, "C{smooth_k_worst:.0f} at worst"),
-        "set-up {microseconds_per_keyframe:.3g} us a keyframe",
+        "set-up {microseconds_per_keyframe:.3g} us per keyframe",
     ),
     _least(
         "Closed and C2 wherever measured, with the least torque",
@@ -124,7 +124,7 @@ QUESTIONS = (
         *(TORQUE, "support {support}"),
     ),
     _least(
-        "C2 wherever measured, with the fewest operations a sample (exponentials and logarithms)",
+        "C2 wherever measured, with the fewest operations per sample (exponentials and logarithms)",
         "operations_sample",
         C2,
         *("{operations_sample:.0f} of them", TORQUE),

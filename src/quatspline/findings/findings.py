@@ -134,9 +134,9 @@ def _smoothing(cell: Ledger) -> tuple[Part, ...]:
     angles = [cell("denoise", "rms_degrees", scheme=name, **where) for name in NAMED]
     return said(
         "What smoothing buys: with white noise of {sigma:.0f} degree about each axis upon {keyframes:.0f} keyframes of "
-        f"a known motion the rms error is, in degrees, {listed(NAMED, '.2f')}; of the angular velocity, in degrees a "
-        "second, {through:.3g} through the keyframes (local-quintic) and {near:.3g} near them. The noise is told from "
-        "the keyframes as {told:.2f} degrees.",
+        f"a known motion the rms error is, in degrees, {listed(NAMED, '.2f')}; of the angular velocity, in degrees "
+        "per second, {through:.3g} through the keyframes (local-quintic) and {near:.3g} near them. The noise is told "
+        "from the keyframes as {told:.2f} degrees.",
         sigma=cell("denoise", "noise_degrees", scheme="slerp", **where),
         keyframes=cell("denoise", "keyframes", scheme="slerp", **where),
         through=cell("denoise", "omega", scheme="local-quintic", **where),

@@ -26,7 +26,8 @@ def _iterations(cell: Ledger) -> tuple[Part, ...]:
     )
 
 
-def _ratios(cell: Ledger, scheme: str, protocol: str, column: str = "ratio_to_quartic") -> Span:
+def time_ratios(cell: Ledger, scheme: str, protocol: str, column: str = "ratio_to_quartic") -> Span:
+    """The least and the most of a column of Table 1 over its four rows, of one scheme by one protocol."""
     where = {"scheme": scheme, "protocol": protocol}
     found = (cell("table1", column, case=case, frames=frames, **where) for case, frames in ROWS)
     cells = tuple(found)
@@ -40,9 +41,9 @@ def _protocol(cell: Ledger) -> tuple[Part, ...]:
         "The paper finds its quartic {paper:.3g} times faster than the B-spline. Solving anew for every frame, as it "
         "does, we measure {slow:.3g} (key at {v0} and {v1} frames, teapot at {v2} and {v3}); solving once and then "
         "evaluating, {fast:.3g}. The difference is protocol, the rest is the scheme.",
-        paper=_ratios(cell, "nielson", "per-frame", "paper_ratio"),
-        slow=_ratios(cell, "nielson", "per-frame"),
-        fast=_ratios(cell, "nielson", "solve-once"),
+        paper=time_ratios(cell, "nielson", "per-frame", "paper_ratio"),
+        slow=time_ratios(cell, "nielson", "per-frame"),
+        fast=time_ratios(cell, "nielson", "solve-once"),
         **numbered(counts),
     )
 
@@ -53,8 +54,8 @@ def _newton(cell: Ledger) -> tuple[Part, ...]:
         "The cumulative B-spline of Kim, Kim & Shin, solved by Newton's method ({steps:d} steps for the teapot), "
         "costs {slow:.3g} times the quartic per frame and {fast:.3g} times solved once.",
         steps=cell("table1", "iterations", **where),
-        slow=_ratios(cell, "kim", "per-frame"),
-        fast=_ratios(cell, "kim", "solve-once"),
+        slow=time_ratios(cell, "kim", "per-frame"),
+        fast=time_ratios(cell, "kim", "solve-once"),
     )
 
 

@@ -98,7 +98,7 @@ def _orders(cell: Ledger) -> float:
 
 
 def _ahead(*peers: str, scheme: str) -> Target:
-    text = f"`{scheme}` over the fastest of {', '.join(f'`{p}`' for p in peers)}, a sample"
+    text = f"`{scheme}` over the fastest of {', '.join(f'`{p}`' for p in peers)}, time per sample"
     return Target(text, 20.0, _faster("evaluate", scheme, *peers), at_least=True)
 
 
@@ -139,7 +139,7 @@ TARGETS: tuple[Target, ...] = (
     ),
     Target("orders 0, 1 and 2 of `quartic` over order 0 alone", 3.5, _orders),
     Target(
-        "`local-quintic` over `quartic`, time a sample",
+        "`local-quintic` over `quartic`, time per sample",
         1.0,
         lambda cell: _each(cell, "evaluate", "local-quintic") / _each(cell, "evaluate", "quartic"),
     ),
@@ -167,7 +167,7 @@ TARGETS: tuple[Target, ...] = (
         unit="us",
     ),
     Target(
-        f"the same over `{ROTATION_SPLINE}`",
+        f"one sample of `quartic`, over `{ROTATION_SPLINE}`",
         20.0,
         _faster("one sample", "quartic", ROTATION_SPLINE),
         at_least=True,

@@ -21,7 +21,7 @@ class LocalQuinticSpline(SegmentCurve):
     spline through the points x_j = ln(q_i^-1 q_j), |j - i| <= m, of the chart centred there, in
     which derivatives are body rates (`local_rates`).  Its ends are not-a-knot where the window is
     cut, natural where it meets the curve's end.  Windows whose chart would fold give way, smoothly,
-    to smaller ones.  One exponential a segment, Q = q_i exp(phi(u)), matches the rates of both ends
+    to smaller ones.  One exponential per segment, Q = q_i exp(phi(u)), matches the rates of both ends
     (docs: local-quintic.md):
 
         phi(0) = 0,    phi'(0) = h v_i,                     phi''(0) = h^2 a_i                   (1)

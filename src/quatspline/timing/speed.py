@@ -61,7 +61,7 @@ class Task:
     keyframes, items : sizes
     width : numbers written per item: what the floor writes
     work : scheme -> (function of a number of items -> contender); raises where it does not apply
-    patience : seconds a call; slower contenders do fewer items, unless it is None
+    patience : seconds per call; slower contenders do fewer items, unless it is None
     arithmetic : scheme -> packed arithmetic instructions of an item, None where they are not counted
     """
 
