@@ -9,9 +9,9 @@ from pathlib import Path
 
 from quatspline.catalogue import shipped
 
-INDEX = "index.md"
-ROW = re.compile(r"^\| `([\w-]+)` \| .* \| \[.*\]\((\S+\.md)\) \|$", re.MULTILINE)
-"""A line of the table of schemes in the documentation's index."""
+INDEX = "schemes.md"
+ROW = re.compile(r"^\| \[`([\w-]+)`\]\((\S+\.md)\) \|", re.MULTILINE)
+"""A line of the documentation's table of schemes whose name leads somewhere."""
 
 
 class Derivations:
