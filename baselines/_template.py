@@ -36,7 +36,7 @@ class Template(Curve):
     #   min_keyframes = 2            fewer are refused
     #   iterative = False            solves by iteration, and leaves a `solve_report`
     #   orders = (0, 1, 2)           of what a call offers: orientation, velocity, acceleration
-    #   operations = Operations()    counts per sample, keyframe, ..., for tables: quatspline.Operations
+    #   operations = Operations()    counts per sample and keyframe, for tables: quatspline.Operations
     #   practical_keyframes = None   beyond so many, experiments leave it out
     #   rescue = {}                  options that find the curve where the default iteration does not
     #   rough = {}                   options that try a curve sooner and nearly, where many are tried

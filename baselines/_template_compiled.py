@@ -11,7 +11,6 @@ from quatspline.kernels.jit import REACH, compiled, fit_kernel, inlined
 from quatspline.kernels.scalars import TINY
 from quatspline.kernels.values import keyframe, put_quat, quat_at, vec
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.segments import SegmentCurve
 
 START, RISE, G0, G1, SIZE = 0, 4, 8, 12, 16
@@ -124,7 +123,6 @@ class Template(SegmentCurve):
     order = 3  # interior approximation order on smooth motion
     support = 4  # keyframes that shape one segment; None means all
     constant_rate = "no"  # "everywhere", "interior" or "no": is a constant spin reproduced?
-    operations = Operations(roots=Per(sample=1))
     family = family(SIZE, point, velocity=velocity, acceleration=acceleration, spare=start)
 
     def _fit(self, keyframes: Keyframes) -> None:

@@ -8,7 +8,6 @@ from quatspline.families.nested import TRIANGLE, set_parameter
 from quatspline.kernels.jit import REACH, fit_kernel, inlined
 from quatspline.kernels.values import keyframe, restored, slerp
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.segments import SegmentCurve
 
 
@@ -35,7 +34,6 @@ class BarryGoldman(SegmentCurve):
     support = 4
     constant_rate = "everywhere"
     family = TRIANGLE
-    operations = Operations(slerps=Per(sample=6), logs=Per(segment=3))
 
     def _fit(self, keyframes: Keyframes) -> None:
         self._solve(FIT)

@@ -20,7 +20,6 @@ from quatspline.kernels.values import (
     vec_at,
 )
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.segments import SegmentCurve
 
 STILL = 1e-14
@@ -51,7 +50,6 @@ class Biarc(SegmentCurve):
     support = 4
     constant_rate = "everywhere"
     family = BIARC
-    operations = Operations(logs=Per(keyframe=4), others={"circle points": Per(sample=1)})
 
     def _fit(self, keyframes: Keyframes) -> None:
         self._solve(FIT)

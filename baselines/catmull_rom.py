@@ -10,7 +10,6 @@ from quatspline.families.nested import TRIANGLE
 from quatspline.fitting.bezier import FIT
 from quatspline.fitting.tangents import CHART, SECANT
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.segments import SegmentCurve
 
 
@@ -42,7 +41,6 @@ class CatmullRom(SegmentCurve):
     support = 4
     constant_rate = "everywhere"
     family = TRIANGLE
-    operations = Operations(slerps=Per(sample=6), logs=Per(keyframe=5), exps=Per(keyframe=2))
 
     def _fit(self, keyframes: Keyframes, *, ends: Literal["chart", "secant"] = "chart") -> None:
         self._solve(FIT, np.array([SECANT if ends == "secant" else CHART]))

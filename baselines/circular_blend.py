@@ -11,7 +11,6 @@ from quatspline.families.circles import BLEND, FIRST, SECOND, SPLIT, set_circle
 from quatspline.kernels.jit import REACH, compiled, fit_kernel, inlined
 from quatspline.kernels.values import keyframe, norm, unit
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.segments import SegmentCurve
 
 SAME = 1e-12
@@ -47,7 +46,6 @@ class CircularBlend(SegmentCurve):
     support = 4
     constant_rate = "everywhere"
     family = BLEND
-    operations = Operations(slerps=Per(sample=1), others={"circle points": Per(sample=2)})
 
     def _fit(self, keyframes: Keyframes, *, blend: Literal["smooth", "linear"] = "smooth") -> None:
         self.continuity = 2 if blend == "smooth" else 1

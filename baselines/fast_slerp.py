@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cache
 from typing import Annotated
 
@@ -28,7 +27,6 @@ from quatspline.kernels.jit import (
 )
 from quatspline.kernels.values import keyframe, put_quat, put_vec
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.options import AtMost, Count
 from quatspline.segments import SegmentCurve
 
@@ -169,16 +167,10 @@ class FastSlerp(SegmentCurve):
     support = 2
     constant_rate = "no"
     family = Family(SIZE, near=_KERNELS, far=_KERNELS)
-    operations = Operations(
-        roots=Per(sample=1), logs=Per(segment=1), others={"polynomial terms": Per(sample=16)}
-    )
 
     angle_error: float
     """The largest angle from slerp over all steps up to half a turn, measured, in rad."""
 
     def _fit(self, keyframes: Keyframes, *, terms: Annotated[Count, AtMost(1000)] = 8) -> None:
-        self.operations = replace(
-            self.operations, others={"polynomial terms": Per(sample=2 * terms)}
-        )
         last, self.angle_error = _balanced(terms)
         self._solve(FIT, np.array([terms, last]))

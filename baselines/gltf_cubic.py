@@ -11,7 +11,6 @@ from quatspline.inputs.arrays import at, real_array, refuse_infinite
 from quatspline.kernels.jit import REACH, compiled, fit_kernel
 from quatspline.kernels.values import keyframe, put_quat, quat_at
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.options import LARGEST
 from quatspline.quaternion import FloatArray
 from quatspline.segments import SegmentCurve
@@ -73,7 +72,6 @@ class GltfCubic(SegmentCurve):
     order = 3
     support = 4
     constant_rate = "no"
-    operations = Operations(roots=Per(sample=1))
     family = NORMALISED
 
     def _fit(

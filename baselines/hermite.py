@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -12,7 +11,6 @@ from quatspline.fitting.tangents import CHART, SECANT, chart_velocities
 from quatspline.kernels.jit import REACH, fit_kernel
 from quatspline.kernels.values import exp, keyframe, log, vec_at
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.segments import SegmentCurve
 
 B1 = (0.0, 3.0, -3.0, 1.0, 0.0, 0.0)
@@ -51,7 +49,6 @@ class Hermite(SegmentCurve):
     support = 4
     constant_rate = "everywhere"
     family = CUMULATIVE
-    operations = Operations(exps=Per(sample=3, keyframe=2), logs=Per(keyframe=5))
 
     def _fit(
         self,
@@ -62,7 +59,6 @@ class Hermite(SegmentCurve):
     ) -> None:
         if window == 5:
             self.support = 6
-            self.operations = replace(self.operations, logs=Per(keyframe=9))
         self._solve(FIT, np.array([window, SECANT if ends == "secant" else CHART]))
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
@@ -12,7 +11,6 @@ from quatspline.families.arcs import ARC, set_arc
 from quatspline.kernels.jit import REACH, fit_kernel
 from quatspline.kernels.values import exp, keyframe, log, norm, unit
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.options import AtMost, Count
 from quatspline.segments import SegmentCurve
 
@@ -52,10 +50,8 @@ class IncrementalSlerp(SegmentCurve):
     constant_rate = "everywhere"
     practical_keyframes = 100_000
     family = ARC
-    operations = Operations(slerps=Per(sample=1), logs=Per(segment=65))
 
     def _fit(self, keyframes: Keyframes, *, steps: Annotated[Count, AtMost(4096)] = 64) -> None:
-        self.operations = replace(self.operations, logs=Per(segment=steps + 1))
         self.fit_kernel, self.parameters = FIT, np.array([float(steps)])
         h, tracks = keyframes.spacings, keyframes.tracks
         points = tracks.shape[0] * h.size * steps

@@ -46,7 +46,6 @@ from quatspline.kernels.values import (
     vec_column,
 )
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.options import LARGEST, Count, OnFailure, Positive, Stop
 from quatspline.quaternion import FloatArray
 from quatspline.segments import SegmentCurve
@@ -176,11 +175,6 @@ class Kim(SegmentCurve):
     iterative = True
     measures_itself = True
     family = CUMULATIVE
-    operations = Operations(
-        exps=Per(sample=3, knot=3, segment=4, solve=3),
-        logs=Per(segment=3),
-        iteration=Operations(exps=Per(knot=3), logs=Per(segment=1)),
-    )
 
     def _fit(
         self,

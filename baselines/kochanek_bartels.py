@@ -11,7 +11,6 @@ from quatspline.families.nested import TRIANGLE
 from quatspline.fitting.bezier import FIT
 from quatspline.fitting.tangents import CHART, SECANT
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.options import per_keyframe
 from quatspline.quaternion import FloatArray
 from quatspline.segments import SegmentCurve
@@ -49,7 +48,6 @@ class KochanekBartels(SegmentCurve):
     support = 4
     constant_rate: Literal["everywhere", "no"] = "everywhere"
     family = TRIANGLE
-    operations = Operations(slerps=Per(sample=6), logs=Per(keyframe=5), exps=Per(keyframe=2))
 
     def _fit(
         self,

@@ -9,7 +9,6 @@ import numpy as np
 from quatspline import quaternion
 from quatspline.families.rotation_vector import PHI, Q0, ROTATION_VECTOR
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.quaternion import FloatArray
 from quatspline.segments import SegmentCurve
 
@@ -42,7 +41,6 @@ class LogCubicSpline(SegmentCurve):
     constant_rate = "no"
     closable = False
     family = ROTATION_VECTOR
-    operations = Operations(exps=Per(sample=1), logs=Per(keyframe=1))
 
     def _fit(
         self,

@@ -11,7 +11,6 @@ from quatspline.families.rotation_vector import ROTATION_VECTOR
 from quatspline.fitting.least_torque import minimise
 from quatspline.kernels.jit import REACH
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.options import AtMost, Count, OnFailure, Positive
 from quatspline.proposed.local_quintic import LocalQuinticSpline
 from quatspline.segments import SegmentCurve
@@ -62,7 +61,6 @@ class MinimumTorqueSpline(SegmentCurve):
     practical_keyframes = 200
     rough = {"subintervals": 1}
     family = ROTATION_VECTOR
-    operations = Operations(exps=Per(sample=1))
 
     def _fit(
         self,

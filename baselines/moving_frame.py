@@ -18,7 +18,6 @@ from quatspline.fitting.end_conditions import fewest, interpolated, natural
 from quatspline.fitting.frame_splines import Rates, axes_of, complete, constants
 from quatspline.inputs.arrays import at, real_array, refuse_infinite
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.options import LARGEST
 from quatspline.quaternion import FloatArray
 from quatspline.segments import SegmentCurve
@@ -67,7 +66,6 @@ class MovingFrame(SegmentCurve):
     support = None
     constant_rate = "no"
     family = FRAMES[3]
-    operations = Operations(others={"nearest rotations": Per(sample=1)})
     departs = {"test_keeps_given_signs": "a frame carries no sign"}
 
     def _fit(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -23,7 +22,6 @@ from quatspline.kernels.jit import (
 )
 from quatspline.kernels.values import arc, keyframe, norm, put_quat, quat_at, slerp
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.options import Count, OnFailure, Positive, Stop, per_keyframe
 from quatspline.segments import SegmentCurve
 
@@ -32,12 +30,6 @@ METHOD, BY_RESIDUAL, TOLERANCE, LIMIT, STATIONARY, TENSION = range(6)
 
 METHODS = ("jacobi", "gauss-seidel", "newton")
 JACOBI, GAUSS_SEIDEL, NEWTON = range(3)
-
-NEWTON_OPERATIONS = Operations(
-    slerps=Per(sample=6),
-    logs=Per(segment=3),
-    iteration=Operations(exps=Per(keyframe=7), logs=Per(keyframe=2)),
-)
 
 STALLED = 4 * np.finfo(float).eps
 """A relative change this small moves nothing any more."""
@@ -81,11 +73,6 @@ class Nielson(SegmentCurve):
     iterative = True
     rescue = {"method": "newton"}
     family = TRIANGLE
-    operations = Operations(
-        slerps=Per(sample=6, inner_keyframe=3, segment=2),
-        logs=Per(segment=3),
-        iteration=Operations(slerps=Per(inner_keyframe=2)),
-    )
 
     def _fit(
         self,
@@ -109,14 +96,6 @@ class Nielson(SegmentCurve):
             self.order = 2
         if ends == "stationary" or (nu > 0.0).any():
             self.constant_rate = "no"
-        if method == "newton":
-            self.operations = NEWTON_OPERATIONS
-        elif stop == "residual":  # a residual, of 3 slerps, before the first update and after each
-            self.operations = replace(
-                self.operations,
-                slerps=Per(sample=6, inner_keyframe=6, segment=2),
-                iteration=Operations(slerps=Per(inner_keyframe=5)),
-            )
         limit = max_iterations
         switches = [METHODS.index(method), stop == "residual", tolerance, limit]
         parameters = np.array([*switches, ends == "stationary", *nu], dtype=float)

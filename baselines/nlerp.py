@@ -13,7 +13,6 @@ from quatspline.kernels.family import family
 from quatspline.kernels.jit import REACH, fit_kernel, inlined
 from quatspline.kernels.values import keyframe
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.segments import SegmentCurve
 
 
@@ -64,7 +63,6 @@ class Nlerp(SegmentCurve):
     support = 2
     constant_rate = "no"
     family = family(SIZE, point, velocity=velocity, acceleration=acceleration)
-    operations = Operations(roots=Per(sample=1), logs=Per(segment=1))
 
     def _fit(self, keyframes: Keyframes) -> None:
         self._solve(FIT)

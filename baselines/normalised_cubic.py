@@ -8,7 +8,6 @@ from quatspline.families.normalised import NORMALISED, set_excess
 from quatspline.kernels.jit import REACH, compiled, fit_kernel
 from quatspline.kernels.values import keyframe, put_quat, quat_at
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.segments import SegmentCurve
 
 
@@ -92,7 +91,6 @@ class NormalisedCubic(SegmentCurve):
     order = 4
     support = None
     constant_rate = "no"
-    operations = Operations(roots=Per(sample=1))
     family = NORMALISED
 
     def _fit(self, keyframes: Keyframes) -> None:

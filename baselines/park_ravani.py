@@ -13,7 +13,6 @@ from quatspline.kernels.jacobians import coefficients, right_jacobian
 from quatspline.kernels.jit import REACH, fit_kernel
 from quatspline.kernels.values import Vec, quat_at, turn, vec_at
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.options import LARGEST
 from quatspline.quaternion import FloatArray
 from quatspline.segments import SegmentCurve
@@ -86,7 +85,6 @@ class ParkRavani(SegmentCurve):
     constant_rate = "everywhere"
     closable = False
     family = ROTATION_VECTOR
-    operations = Operations(exps=Per(sample=1), logs=Per(segment=1))
     practical_keyframes = 8
     departs = dict.fromkeys(
         (

@@ -12,7 +12,6 @@ from quatspline.fitting.tangents import CHART, SECANT, end_velocity
 from quatspline.kernels.jit import REACH, compiled, fit_kernel, inlined
 from quatspline.kernels.values import exp, keyframe, norm, put_quat, restored, slerp, unit
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.segments import SegmentCurve
 
 STATIONARY = 2.0
@@ -50,7 +49,6 @@ class ShoemakeBezier(SegmentCurve):
     constant_rate: Literal["everywhere", "interior", "no"] = "interior"
     non_uniform = False
     family = TRIANGLE
-    operations = Operations(slerps=Per(sample=6, inner_keyframe=1), logs=Per(segment=3))
 
     def _fit(
         self,

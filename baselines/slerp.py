@@ -6,7 +6,6 @@ from quatspline.families.arcs import ARC, set_arc
 from quatspline.kernels.jit import REACH, fit_kernel
 from quatspline.kernels.values import keyframe
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.segments import SegmentCurve
 
 
@@ -27,7 +26,6 @@ class Slerp(SegmentCurve):
     support = 2
     constant_rate = "everywhere"
     family = ARC
-    operations = Operations(slerps=Per(sample=1), logs=Per(segment=1))
 
     def _fit(self, keyframes: Keyframes) -> None:
         self._solve(FIT)

@@ -31,7 +31,6 @@ from quatspline.kernels.jit import (
 )
 from quatspline.kernels.values import exp, keyframe, log, norm, put_quat, quat_at, unit, vec_at
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.options import Count, OnFailure, Positive, Stop
 from quatspline.segments import SegmentCurve
 
@@ -70,7 +69,6 @@ class SphericalAverage(SegmentCurve):
     constant_rate = "everywhere"
     iterative = True
     family = SPHERICAL_MEAN
-    operations = Operations(logs=Per(sample=12), iteration=Operations(logs=Per(keyframe=3)))
     departs = {
         "test_keeps_given_signs": "controls of so long a step share no half sphere: no solution found"
     }

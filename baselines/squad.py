@@ -13,7 +13,6 @@ from quatspline.fitting.tangents import CHART, SECANT, chart_velocities, step
 from quatspline.kernels.jit import REACH, compiled, fit_kernel
 from quatspline.kernels.values import exp, keyframe, log, put_vec, vec_at
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.segments import SegmentCurve
 
 TWO_A, SINGLE_A, TEXTBOOK = 0.0, 1.0, 2.0
@@ -52,7 +51,6 @@ class Squad(SegmentCurve):
     support = 4
     constant_rate: Literal["everywhere", "no"] = "everywhere"
     family = SQUAD
-    operations = Operations(slerps=Per(sample=3), logs=Per(keyframe=6), exps=Per(keyframe=2))
 
     def _fit(
         self,

@@ -10,7 +10,8 @@ from typing import Any
 import pandas as pd
 import pytest
 
-from quatspline.timing.speed import FILL, SINCOS
+from quatspline.timing.floors import WRITING
+from quatspline.timing.speed import SINCOS
 
 
 @pytest.hookimpl(trylast=True)
@@ -35,6 +36,6 @@ def _row(benchmark: Any) -> dict[str, Any]:
 
 def _beside_floors(each: pd.Series) -> str:
     """Nanoseconds by name as a table; the column of a floor that was deselected is empty."""
-    times = {f"times {floor}": each / each.get(floor, float("nan")) for floor in (FILL, SINCOS)}
+    times = {f"times {floor}": each / each.get(floor, float("nan")) for floor in (WRITING, SINCOS)}
     table = pd.DataFrame({each.name: each, **times})
     return table.to_string(float_format="{:,.2f}".format, index_names=False, na_rep="")

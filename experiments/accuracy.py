@@ -8,7 +8,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from quatspline.catalogue import found
-from quatspline.figures import style
+from quatspline.figures import named, style
 from quatspline.instruments.accuracy import TARGETS, errors, knots, with_reach, with_slopes
 from quatspline.instruments.trials import Row, attempted, builder, facts
 from quatspline.quaternion import FloatArray
@@ -88,16 +88,18 @@ def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     kinds = [kind for kind in KINDS if (table["knots"] == kind).any()]
-    fig, panels = style.axes(style.PAGE, 5.4, 1, len(kinds), sharey=True)
+    fig, panels = style.axes(style.PAGE, 3.9, 1, len(kinds), sharey=True)
+    fig.get_layout_engine().set(rect=(0.0, 0.0, named.ROOM, 1.0))
     for ax, kind in zip(panels[0], kinds, strict=True):
-        for name, rows in table[table["knots"] == kind].groupby("scheme"):
-            looks = style.scheme_style(str(name))
-            ax.plot(rows["spacing"], rows["inner_angle"], label=name, **looks, lw=0.9, ms=2.8)
+        groups = table[table["knots"] == kind].sort_values("keyframes").groupby("scheme")
+        rows = ((str(name), each["spacing"], each["inner_angle"]) for name, each in groups)
+        ends = named.draw_curves(ax, rows)
         _guides(ax, table)
         ax.set(xscale="log", yscale="log", title=f"{kind} times", xlabel="keyframe spacing (t)")
+        ax.invert_xaxis()
     panels[0, 0].set_ylabel("largest error on the inner window (rad)")
     style.letters(panels[0])
-    style.legend_of(fig, panels[0, 0], 4)
+    named.name_ends(fig, {ax: ends})
     return fig
 
 
@@ -109,14 +111,21 @@ def _guides(ax: Any, table: pd.DataFrame) -> None:
     for order in (2, 3, 4):
         y = least * (x / x[0]) ** order
         ax.plot(x, y, color="#999999", lw=0.7, ls=":")
-        ax.annotate(f"order {order}", (x[1], y[1]), fontsize=6.5, color="#777777", ha="right")
+        ax.annotate(
+            *(f"order {order}", (x[1], y[1]), (2, 2)),
+            textcoords="offset points",
+            fontsize=6.5,
+            color="#777777",
+        )
     for degrees in TARGETS.values():
         ax.axhline(np.radians(degrees), color="#888888", lw=0.5)
+        place = {"transform": ax.get_yaxis_transform(), "va": "bottom", "ha": "left"}
+        ax.text(0.01, np.radians(degrees), f"{degrees:g}°", fontsize=6.5, color="#777777", **place)
 
 
 def caption(table: pd.DataFrame) -> str:
     return (
         "Largest angle between each curve and the analytic motion that its keyframes come from, on the inner window "
-        "[3, 7] of [0, 10], against the mean keyframe spacing; lower is better. Dotted lines have slopes 2, 3, 4; "
-        "horizontal lines are at 1, 0.1 and 0.01 degrees."
+        "[3, 7] of [0, 10], against the mean keyframe spacing, which falls to the right; lower is better. "
+        f"{named.SAID} Dotted lines have slopes 2, 3, 4; horizontal lines are at 1, 0.1 and 0.01 degrees."
     )

@@ -1,4 +1,4 @@
-"""One row a scheme, one column a question: derived from the other tables of the folder."""
+"""One row per scheme, one column a question: derived from the other tables of the folder."""
 
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
@@ -7,15 +7,12 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from quatspline.catalogue import found, version
+from quatspline.catalogue import called, found, version
 from quatspline.claims.claim import DEPARTS, UNDECIDED
-from quatspline.figures import style
+from quatspline.figures import direct, named, style
 from quatspline.findings import decisions
 from quatspline.findings.quotes import Reader
-from quatspline.operations import UNSTATED, Per
-from quatspline.quaternion import FloatArray
 from quatspline.runs.experiment import FULL, QUICK, Run
-from quatspline.timing.operations import of_a_keyframe, of_a_sample
 from quatspline.trajectories.sets import COUNT
 
 TITLE = "Which scheme"
@@ -65,15 +62,13 @@ ASKED = {"interpolates": "passes_keys", "takes uneven times": "uneven_times", "c
 """Claims whose measured answers are columns."""
 EASY, SMOOTH = "60 degrees", "smooth"
 COSTS = {
-    "evaluation": (10_000, 1e9, of_a_sample, "nanoseconds_per_{}", "sample"),
-    "set-up": (1000, 1e6, of_a_keyframe, "microseconds_per_{}", "keyframe"),
+    "evaluation": (10_000, 1e9, "nanoseconds_per_{}", "sample"),
+    "set-up": (1000, 1e6, "microseconds_per_{}", "keyframe"),
 }
-"""The largest size of a task, units a second, which operations are its, and columns."""
+"""The largest size of a task, units a second, and columns."""
 COUNTED = {"exps": 1.0, "logs": 1.0, "slerps": 2.0}  # a slerp is one of each
 LEAST_EXCESS = 1e-4
 """Excess of torque below this is drawn there."""
-GAP, ROOM = 0.034, 3.0
-"""Between names, as a share of the height; and beside the slowest scheme, for lines to names."""
 
 
 def derive(run: Run, read: Reader) -> pd.DataFrame:
@@ -207,28 +202,15 @@ def _fairness(table: pd.DataFrame) -> pd.DataFrame:
 
 def _cost(table: pd.DataFrame) -> pd.DataFrame:
     parts = []
-    for task, (size, unit, each_takes, seconds, item) in COSTS.items():
+    for task, (size, unit, seconds, item) in COSTS.items():
         rows = table[(table["task"] == task) & (table["size"] <= size)]
         rows = rows[rows["seconds_median"].notna()].sort_values("size").groupby("scheme").last()
         each = rows["seconds_median"] / rows["size"] * unit
         counts = rows[list(COUNTED)].mul(pd.Series(COUNTED)).sum(axis=1, skipna=False)
-        told = [_all_counted(str(name), each_takes) for name in rows.index]
         part = {seconds.format(item): each, f"times_fastest_{item}": each / each.min()}
-        counted = counts.where(np.array(told, dtype=bool))
-        parts.append(pd.DataFrame({**part, f"operations_{item}": counted}))
+        parts.append(pd.DataFrame({**part, f"operations_{item}": counts.where(counts > 0)}))
     short = "run_size" in table and bool(table["run_size"].eq(QUICK).any())
     return pd.concat(parts, axis=1).assign(short_rounds=short)
-
-
-def _all_counted(name: str, each: Callable[[Per], float]) -> bool:
-    """Whether a scheme states what each of some unit takes, and in nothing but the operations added here."""
-    item = found().get(name)
-    if item is None or item.scheme is None:
-        return False
-    own = item.scheme.operations
-    parts = (own, own.iteration or UNSTATED)
-    kinds = {kind for part in parts for kind, per in part.kinds.items() if each(per)}
-    return bool(kinds) and kinds <= set(COUNTED)
 
 
 SOURCES: dict[str, Callable[[pd.DataFrame], pd.DataFrame]] = {
@@ -247,54 +229,34 @@ SOURCES: dict[str, Callable[[pd.DataFrame], pd.DataFrame]] = {
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    fig, panels = style.axes(style.PAGE, 4.6)
+    fig, panels = style.axes(style.PAGE, 4.2)
     ax = panels[0, 0]
     shown = table[np.isfinite(table["torque"]) & table["nanoseconds_per_sample"].notna()]
     shown = shown.assign(excess=(shown["torque"] - 1.0).clip(lower=LEAST_EXCESS))
-    for _, row in shown.iterrows():
-        looks = style.scheme_style(row["scheme"]) | {"linestyle": ""}
-        face = looks["color"] if row["times_pareto"] == "yes" else "white"
-        x, y = row["nanoseconds_per_sample"], row["excess"]
-        if row["pareto"] == "yes":
-            ax.plot(x, y, "o", ms=10, mfc="none", mec="#999999", mew=0.8)
-        ax.plot(x, y, **looks, ms=5, mfc=face)
-    ax.set(xscale="log", yscale="log", xlabel="nanoseconds a sample")
+    points = [_drawn(ax, row) for _, row in shown.iterrows()]
+    ax.set(xscale="log", yscale="log", xlabel="nanoseconds per sample")
     ax.set_ylabel("median excess of torque energy over the minimum")
-    ax.set_xlim(right=ROOM * ax.get_xlim()[1])
-    _labels(ax, shown)
+    fig.draw_without_rendering()
+    fig.set_layout_engine("none")
+    direct.label_points(ax, [point for point in points if point is not None])
     return fig
 
 
-def _labels(ax: Any, shown: pd.DataFrame) -> None:
-    """Names in a column at the right, near the height of their points, each with a line to its own."""
-    lo, hi = np.log(ax.get_ylim())
-    rows = shown.sort_values(["excess", "nanoseconds_per_sample", "scheme"])
-    heights = _spread((np.log(rows["excess"].to_numpy()) - lo) / (hi - lo), GAP)
-    for height, (_, row) in zip(heights, rows.iterrows(), strict=True):
-        ax.annotate(
-            row["scheme"],
-            (row["nanoseconds_per_sample"], row["excess"]),
-            (1.04, height),
-            textcoords="axes fraction",
-            va="center",
-            fontsize=7,
-            arrowprops={"arrowstyle": "-", "color": "#bbbbbb", "lw": 0.4, "relpos": (0.0, 0.5)},
-        )
-
-
-def _spread(wanted: FloatArray, gap: float) -> list[float]:
-    """Heights, ascending, that keep a gap and stay in [0, 1] as near to those wanted as that goes."""
-    heights: list[float] = []
-    for i, height in enumerate(wanted):
-        highest = 1.0 - gap * (len(wanted) - 1 - i)
-        lowest = heights[-1] + gap if heights else 0.0
-        heights.append(max(lowest, min(float(height), highest)))
-    return heights
+def _drawn(ax: Any, row: pd.Series) -> direct.End | None:
+    """Draw a scheme's point; what is written beside it, if anything is."""
+    name, x, y = row["scheme"], row["nanoseconds_per_sample"], row["excess"]
+    looks = named.looks(name) | {"linestyle": "", "ms": 5}
+    if best := row["times_pareto"] == "yes":
+        ax.plot(x, y, "o", ms=10, mfc="none", mec="#444444", mew=0.8)
+    ax.plot(x, y, **looks)
+    if not best and name not in named.NAMED:
+        return None
+    return direct.End(x, y, called(name), looks["color"] if name in named.NAMED else "#555555")
 
 
 def caption(table: pd.DataFrame) -> str:
     return (
         "Torque energy over the minimum (median of the committed sets, minus 1; below 1e-4 drawn there) against the "
-        "time of a sample; both are better when less. Filled: on the front of torque, order and the two timings; "
-        "ringed: on that of torque, order and counted operations. Schemes of infinite energy are left out."
+        f"time of a sample; both are better when less. {named.SAID} Ringed: on the front of torque, order and the two "
+        "timings. Schemes of infinite energy are left out."
     )

@@ -178,6 +178,10 @@ def _regimes(run: Run, cls: type[Curve], in_part: bool) -> dict[str, list[Probe]
     }
 
 
+SHORT = {"everywhere": "all", "interior": "inside"}
+"""In the figure."""
+
+
 # -- figure -------------------------------------------------------------------------------------
 
 
@@ -203,16 +207,24 @@ def _matrix(ax: Any, verdicts: pd.DataFrame, texts: pd.DataFrame) -> None:
     codes = verdicts.apply(lambda column: column.map(list(COLORS).index, na_action="ignore"))
     colors = mpl.colors.ListedColormap(list(COLORS.values()))
     ax.imshow(codes.astype(float), cmap=colors, vmin=0, vmax=len(COLORS) - 1, aspect="auto")
-    label_cells(ax, texts.fillna(""), verdicts == DEPARTS)
+    label_cells(ax, texts.fillna("").map(_short), verdicts == DEPARTS)
     heads = [str(name).replace(" degrees", "°") for name in verdicts]
     heads = [
         name.replace(", ", ",\n" if name == OTHERS else "\n", 1).replace(" is the", "\nis the")
         for name in heads
     ]
-    ax.set_xticks(range(verdicts.shape[1]), heads, fontsize=6, rotation=90)
+    ax.set_xticks(range(verdicts.shape[1]), heads, fontsize=7, rotation=90)
     scheme_rows(ax, list(verdicts.index))
     ax.tick_params(length=0, top=True, labeltop=True, bottom=False, labelbottom=False)
     ax.grid(visible=False)
+
+
+def _short(text: Any) -> str:
+    """What was measured, in a cell's width: one digit of small numbers, and where a rate is kept."""
+    told = str(text)
+    if "e-" in told:
+        return f"{float(told):.0e}".replace("e-0", "e-")
+    return SHORT.get(told, told)
 
 
 def caption(table: pd.DataFrame) -> str:
@@ -224,5 +236,5 @@ def caption(table: pd.DataFrame) -> str:
         "fault, green: holds, pale: holds as far as tried at this size, grey: not measurable) with what was measured; "
         f"of {len(table)} in all, {', '.join(parts)}. Continuity is claimed once and tried under several step angles "
         "and kinds of times. Rows are sorted by departures; other claims are those of publications and libraries about "
-        "one scheme (departures/all)."
+        "one scheme (departures/all). A constant rate is kept by all segments, or inside: away from the ends."
     )

@@ -1,7 +1,7 @@
 """Where every iterative scheme converges, in how many iterations, and how fast in the end."""
 
 import time
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -206,43 +206,88 @@ def _jumps(
 # -- figure -------------------------------------------------------------------------------------
 
 
+COLUMNS = 4
+
+
+class Block(NamedTuple):
+    """Panels of schemes and methods that show one share, in colours of its own."""
+
+    groups: list[Any]
+    share: str
+    colours: str
+    label: str
+
+    @property
+    def rows(self) -> int:
+        """Of panels."""
+        return -(-len(self.groups) // COLUMNS)
+
+
 def draw(table: pd.DataFrame) -> Figure:
     count = int(table.loc[table["keyframes"] <= COUNTS[-1], "keyframes"].max())
     shown = table[table["keyframes"] == count].fillna({"method": ""})
-    groups = list(shown.groupby(["scheme", "method"], sort=True))
-    rows = -(-len(groups) // 4)
-    fig, panels = style.axes(style.PAGE, 1.9 * rows + 0.7, rows, 4, sharex=True, sharey=True)
-    for ax in panels.flat[len(groups) :]:
-        ax.set_visible(False)
-    for ax, ((name, method), group) in zip(panels.flat, groups, strict=False):
-        image = _heat(ax, group)
-        ax.set_title(f"{name}\n{method}" if method else name, fontsize=8)
-    for ax in panels[:, 0]:
-        ax.set_ylabel("step angle (degrees)")
-    for ax in panels.flat[max(len(groups) - 4, 0) : len(groups)]:  # the lowest that are drawn
-        ax.tick_params(labelbottom=True)
-        ax.set_xlabel("unevenness")
-    fig.colorbar(image, ax=panels, label="share of sets solved", shrink=0.8)
+    shown = shown.assign(share_smooth=1.0 - shown["share_jumping"])
+    told = shown.groupby("scheme")["share_converged"].transform("count") > 0
+    blocks = [
+        Block(_groups(shown[told]), "share_converged", "viridis", "share of sets solved"),
+        Block(_groups(shown[~told]), "share_smooth", "cividis", "share of sets without a jump"),
+    ]
+    blocks = [block for block in blocks if block.groups]
+    heights = [block.rows for block in blocks]
+    size = style.PAGE, 1.75 * sum(heights) + 0.6 * len(heights)
+    fig = Figure(figsize=size, layout="constrained")
+    parts: Any = fig.subfigures(len(blocks), 1, height_ratios=heights, squeeze=False)
+    for part, block in zip(parts[:, 0], blocks, strict=True):
+        _block(part, block)
     return fig
 
 
-def _heat(ax: Any, group: pd.DataFrame) -> Any:
-    """The share solved as colour; written on it the median of iterations, or the worst jump."""
-    share = group["share_converged"].fillna(1.0 - group["share_jumping"])
-    noted = group["iterations_median"].map("{:.0f}".format)
-    noted = noted.where(group["share_converged"].notna(), group["jump_worst"].map("{:.0e}".format))
-    frame = group.assign(share=share, noted=noted)
-    grid = frame.pivot(index="step_degrees", columns="unevenness", values="share")
+def _groups(rows: pd.DataFrame) -> list[Any]:
+    return list(rows.groupby(["scheme", "method"], sort=True))
+
+
+def _block(fig: Any, block: Block) -> None:
+    """The panels of one quantity, with its bar."""
+    groups, rows = block.groups, block.rows
+    panels = fig.subplots(rows, COLUMNS, squeeze=False, sharex=True, sharey=True)
+    for ax in panels.flat[len(groups) :]:
+        ax.set_visible(False)
+    for ax, ((name, method), group) in zip(panels.flat, groups, strict=False):
+        image = _heat(ax, group, block.share, block.colours)
+        ax.set_title(f"{name}\n{method}" if method else name, fontsize=8)
+    for ax in panels[:, 0]:
+        ax.set_ylabel("step angle (degrees)")
+    for ax in panels.flat[max(len(groups) - COLUMNS, 0) : len(groups)]:  # the lowest that are drawn
+        ax.tick_params(labelbottom=True)
+        ax.set_xlabel("unevenness")
+    fig.colorbar(image, ax=panels, label=block.label, shrink=0.9, aspect=14 * rows)
+
+
+def _heat(ax: Any, group: pd.DataFrame, share: str, colours: str) -> Any:
+    """A share as colour; written on it the median of iterations, or the worst jump."""
+    solved = share == "share_converged"
+    noted = (
+        group["iterations_median"].map("{:.0f}".format)
+        if solved
+        else group["jump_worst"].map(_power)
+    )
+    frame = group.assign(noted=noted)
+    grid = frame.pivot(index="step_degrees", columns="unevenness", values=share)
     notes = frame.pivot(index="step_degrees", columns="unevenness", values="noted")
-    image = ax.imshow(grid, origin="lower", aspect="auto", vmin=0.0, vmax=1.0, cmap="viridis")
+    image = ax.imshow(grid, origin="lower", aspect="auto", vmin=0.0, vmax=1.0, cmap=colours)
     ax.set_xticks(range(grid.shape[1]), grid.columns)
     ax.set_yticks(range(grid.shape[0]), grid.index)
     ax.grid(False)
     for (i, j), value in np.ndenumerate(grid.to_numpy()):
         if np.isfinite(value) and notes.iat[i, j] != "nan":
             color = "black" if value > 0.6 else "white"
-            ax.text(j, i, notes.iat[i, j], ha="center", va="center", fontsize=6, color=color)
+            ax.text(j, i, notes.iat[i, j], ha="center", va="center", fontsize=7, color=color)
     return image
+
+
+def _power(value: float) -> str:
+    """A small number in few characters."""
+    return f"{value:.0e}".replace("e-0", "e-").replace("e+00", "")
 
 
 def caption(table: pd.DataFrame) -> str:
@@ -250,6 +295,6 @@ def caption(table: pd.DataFrame) -> str:
     return (
         f"Share of random sets of {count} keyframes that are solved within {LIMIT} iterations, against the step angle "
         "and the unevenness of the knots (largest possible ratio of spacings); written on it is the median of "
-        "iterations of the sets that converge. Libraries that tell of no solve are shown by the share of sets without "
-        "a jump of acceleration, with the worst jump over the peak written."
+        "iterations of the sets that converge. Libraries that tell of no solve stand below, under a bar of their own: "
+        "the share of sets without a jump of acceleration, with the worst jump over the peak written."
     )

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from quatspline import catalogue
 from quatspline.curve import Curve
-from quatspline.figures import style
+from quatspline.figures import named, style
 from quatspline.runs.experiment import Run
 from quatspline.timing.budget import Budget, Call, seconds
 from quatspline.timing.cost import SPREAD, Task, costs, fitted_whole, operations, peak_bytes
@@ -135,28 +135,31 @@ def _counts(task: str, name: str) -> dict[str, float]:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    fig, panels = style.axes(style.PAGE, 5.6, 1, 2)
-    measured = table[table["seconds_median"].notna()]
+    fig, panels = style.axes(style.PAGE, 3.6, 1, 2)
+    fig.get_layout_engine().set(rect=(0.0, 0.0, named.ROOM, 1.0), wspace=0.34)
+    measured = table[table["seconds_median"].notna()].sort_values("size")
+    ends = {}
     for ax, task, unit in zip(panels[0], SIZES, ("keyframe", "sample"), strict=False):
-        for name, rows in measured[measured["task"] == task].groupby("scheme"):
-            peer = catalogue.scheme(str(name)).peer is not None
-            looks = style.scheme_style(str(name)) | {"ms": 2.5, "lw": 0.6 if peer else 1.1}
-            looks |= {"markerfacecolor": "white", "mew": 0.6} if peer else {}
-            ax.plot(rows["size"], rows["seconds_median"] / rows["size"], label=name, **looks)
+        groups = measured[measured["task"] == task].groupby("scheme")
+        rows = (
+            (str(name), each["size"], each["seconds_median"] / each["size"])
+            for name, each in groups
+        )
+        ends[ax] = named.draw_curves(ax, rows)
         ax.set(xscale="log", yscale="log", title=task)
-        ax.set(xlabel=f"{unit}s", ylabel=f"seconds a {unit}")
+        ax.set(xlabel=f"{unit}s", ylabel=f"seconds per {unit}")
     style.letters(panels[0])
-    style.legend_of(fig, panels[0, 0], 4)
+    named.name_ends(fig, ends)
     return fig
 
 
 def caption(table: pd.DataFrame) -> str:
     winners = table[table["times_fastest"] == 1.0].sort_values("size").groupby("task").last()
-    named = [
+    told = [
         f"{task} at {row['size']:,}: {row['scheme']} ({row['seconds_median']:.1e} s)"
         for task, row in winners.iterrows()
     ]
     return (
-        "Seconds a keyframe of set-up, and seconds a sample of evaluation, against the size; libraries thin and "
-        f"hollow. Fastest at the largest size: {'; '.join(named)}."
+        "Seconds per keyframe of set-up, and per sample of evaluation, against the size; less is better. "
+        f"{named.SAID} Curves end where a call would be over budget. Fastest at the largest size: {'; '.join(told)}."
     )

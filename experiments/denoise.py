@@ -29,7 +29,7 @@ NOTE = (
     f"noise of their own. '{ALL}' takes the joints of all clips together. rms_degrees: a joint's rms angle, median "
     "over joints; worst_degrees: the largest; keyframes_degrees: the same at the keyframes, which an interpolant "
     "misses by the noise itself, sqrt(3) noise_degrees; over_slerp: a joint's rms angle over slerp's, geometric mean, "
-    "most_over_slerp: the largest; omega: rms error of the angular velocity, degrees a second, of the tumble; "
+    "most_over_slerp: the largest; omega: rms error of the angular velocity, degrees per second, of the tumble; "
     "told_degrees: the noise as estimated from the keyframes alone. Lower is better but for told_degrees, which should "
     "be noise_degrees. smoothing-spline chooses its weight by itself, by cross-validation (', gcv') or for the noise "
     "that was added (', told'), where some was."

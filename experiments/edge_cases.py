@@ -28,13 +28,13 @@ NOTE = (
 )
 FORMATS = {"deviation": ".1e", "relative": ".1e"}
 RESULTS = {
-    "exact": "#009e73",
-    "as claimed": "#8fd3bd",
+    "exact": "#cdebe0",
+    "as claimed": "#7cc4ab",
     "wrong": "#e6b84c",
     "NaN": "#d55e00",
     "error": "#b0b0b0",
 }
-"""Colours of results, apart for colour-blind readers and, with the text in the cells, without colour."""
+"""Colours of results, apart for colour-blind readers and, with the text in all cells but the exact, without colour."""
 
 
 def cells(run: Run) -> list[dict[str, Any]]:
@@ -72,6 +72,7 @@ def draw(table: pd.DataFrame) -> Figure:
     relative = table.pivot(index="scheme", columns="case", values="relative")
     relative = relative.loc[results.index, results.columns]
     texts = results.where(~results.isin(["wrong", "as claimed"]), relative.map(_short))
+    texts = texts.where(results != "exact", "")
     label_cells(ax, texts, results == "NaN")
     ax.set_xticks(
         range(results.shape[1]), [_two_lines(str(name)) for name in results], fontsize=6.5
@@ -96,8 +97,8 @@ def _two_lines(name: str) -> str:
 
 def caption(table: pd.DataFrame) -> str:
     return (
-        "What each scheme makes of edge cases. Numbers: how far off, over the largest step, where the result is wrong "
-        "(yellow) or off only where the scheme claims nothing (pale green); 'error': refused or failed, with the "
-        "reason in the table. A scheme without a closed curve refuses the full turn, one of uniform times refuses "
-        "others. Rows are sorted by the number of cases without a fault."
+        "What each scheme makes of edge cases. Pale and empty: exact. Numbers: how far off, over the largest step, "
+        "where the result is wrong (yellow) or off only where nothing is claimed (green); 'error': refused or failed, "
+        "with the reason in the table. A scheme without a closed curve refuses the full turn, one of uniform times "
+        "refuses others. Rows are sorted by the number of cases without a fault."
     )

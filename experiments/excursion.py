@@ -65,7 +65,7 @@ def measure_cell(run: Run, scheme: str, data: str) -> list[Row]:
 
 
 def _measured(name: str, times: FloatArray, q: FloatArray) -> list[Row]:
-    """A row a segment: shares of its step, or what it wanders; in degrees."""
+    """A row per segment: shares of its step, or what it wanders; in degrees."""
     found, measured = excursion(builder(name)(times, q)), version(name)
     degrees = zip(*map(np.degrees, found), strict=True)
     rows: list[Row] = []

@@ -18,7 +18,7 @@ PAPER = False
 KEYS = ["scheme", "sphere_degrees", "terms", "steps"]
 NOTE = (
     "Two keyframes, sphere_degrees apart on the sphere of unit quaternions, which is a rotation by twice that angle, "
-    "step_degrees. error: the largest angle from slerp, as a rotation in rad, on 8193 samples an arc in random frames; "
+    "step_degrees. error: the largest angle from slerp, as a rotation in rad, 8193 samples per arc in random frames; "
     "sphere_error_degrees: the same on the sphere in degrees, so half of it; lower is better. fast-slerp by terms, "
     "incremental-slerp by steps; growth: the power of the number of steps that its drift grows with, by regression "
     "over all of them. closed_form: nlerp's error by its formula, which has nothing to do with the samples."

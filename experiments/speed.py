@@ -1,4 +1,4 @@
-"""Speed on fixed tasks: every scheme beside the floors of writing and of one sine and cosine."""
+"""Speed on fixed tasks: every scheme beside what one core can do."""
 
 import numpy as np
 import pandas as pd
@@ -7,8 +7,9 @@ from matplotlib.figure import Figure
 from quatspline.catalogue import found, version
 from quatspline.figures import style
 from quatspline.runs.experiment import FULL, QUICK, Run
+from quatspline.timing.floors import MULTIPLY_ADD, WRITING, attainable
 from quatspline.timing.interleaved import LEAST
-from quatspline.timing.speed import FILL, FLOORS, SINCOS, Task, measured, starts, tasks
+from quatspline.timing.speed import FLOORS, SINCOS, Task, measured, starts, tasks
 
 TITLE = "Speed"
 PAPER = False
@@ -16,15 +17,20 @@ SERIAL = True
 KEYS = ["task", "scheme"]
 NOTE = (
     "Medians of interleaved, calibrated rounds on one thread unless the task says otherwise, compilation and warm-up "
-    "apart; keyframes are a walk of 40-degree steps. times_fill and times_sincos: per item, over writing the result "
-    "and over one numpy sine and cosine an item in the same run. Slow peers do the first items only. "
+    "apart; keyframes are a walk of 40-degree steps. instructions are packed arithmetic ones per item, counted by "
+    "running the kernels, each for as many samples as a vector holds. nanoseconds_attainable is the larger of their "
+    "time at the rate of the row multiply-add and of the row writing, and timed_share what that is of the measured "
+    "time, in percent. times_sincos: over one numpy sine and cosine an item in the same run. Slow peers do the first "
+    "items only. "
     "Iterative schemes solve to 1e-9. 'start' rows are seconds in new processes."
 )
 FORMATS = {
     "seconds_median": ".3g",
     "seconds_iqr": ".1g",
     "nanoseconds_per_item": ".4g",
-    "times_fill": ".3g",
+    "instructions": "g",
+    "nanoseconds_attainable": ".3g",
+    "timed_share": ".3g",
     "times_sincos": ".3g",
 }
 ROUNDS: dict[str, int] = {QUICK: 3, FULL: 9}
@@ -43,15 +49,16 @@ def measure_cell(run: Run, task: str) -> list[dict[str, object]]:
         return _starts(rounds, run)
     chosen = next(t for t in tasks(run.rng("speed"), run.quick) if t.name == task)
     names = run.schemes or [name for name, item in found().items() if item.scheme is not None]
-    return _rows(chosen, run, names, rounds if chosen.keyframes < MANY else 1)
+    return rows_of(chosen, run, names, rounds if chosen.keyframes < MANY else 1)
 
 
-def _rows(task: Task, run: Run, names: list[str], rounds: int) -> list[dict[str, object]]:
+def rows_of(task: Task, run: Run, names: list[str], rounds: int) -> list[dict[str, object]]:
     rows: list[dict[str, object]] = []
     floors: dict[str, float] = {}
     least = LEAST / 10 if run.quick else LEAST
     for row in measured(task, names, rounds, run.seed, least):
-        base: dict[str, object] = {"task": task.name, "scheme": row.name, "unit": task.unit}
+        base: dict[str, object] = {"task": task.name, "scheme": row.name}
+        base["unit"] = MULTIPLY_ADD if row.name == MULTIPLY_ADD else task.unit
         base |= {"keyframes": task.keyframes, "failure": row.failure, "run_size": run.size}
         if row.timing is None:
             rows.append(base)
@@ -67,11 +74,24 @@ def _rows(task: Task, run: Run, names: list[str], rounds: int) -> list[dict[str,
                 "seconds_median": row.timing.median,
                 "seconds_iqr": row.timing.iqr,
                 "nanoseconds_per_item": 1e9 * each,
-                "times_fill": each / floors[FILL],
                 "times_sincos": each / floors[SINCOS] if SINCOS in floors else None,
+                **_attained(task, row.name, each, floors),
             }
         )
     return rows
+
+
+def _attained(task: Task, name: str, each: float, floors: dict[str, float]) -> dict[str, object]:
+    """What an item takes at least, of schemes whose arithmetic is counted."""
+    instructions = None if name in FLOORS else task.arithmetic(name)
+    if instructions is None:
+        return {}
+    least = attainable(instructions, floors[MULTIPLY_ADD], floors[WRITING])
+    return {
+        "instructions": instructions,
+        "nanoseconds_attainable": 1e9 * least,
+        "timed_share": 100.0 * least / each,
+    }
 
 
 def _starts(rounds: int, run: Run) -> list[dict[str, object]]:
@@ -95,7 +115,6 @@ PANELS = ("evaluate", "one sample", "set-up")
 def draw(table: pd.DataFrame) -> Figure:
     """Nanoseconds an item, in-house schemes in colour, peers hollow, the floors as lines."""
     fig, panels = style.axes(style.PAGE, 6.4, 1, len(PANELS), sharey=True)
-    known = found()
     order = table[(table["task"] == PANELS[0]) & table["seconds_median"].notna()]
     names = [n for n in order.sort_values("nanoseconds_per_item")["scheme"] if n not in FLOORS]
     for ax, task in zip(panels[0], PANELS, strict=True):
@@ -103,16 +122,13 @@ def draw(table: pd.DataFrame) -> Figure:
         for height, name in enumerate(names):
             if name in rows.index:
                 looks = style.scheme_style(name) | {"linestyle": ""}
-                item = known.get(name)
-                peer = item is not None and item.scheme is not None and item.scheme.peer
-                face = {"markerfacecolor": "white"} if peer else {}
-                ax.plot(rows.loc[name, "nanoseconds_per_item"], height, **(looks | face))
-        for floor, dash in zip(FLOORS, ("-", ":"), strict=True):
+                ax.plot(rows.loc[name, "nanoseconds_per_item"], height, **looks)
+        for floor, dash in zip((WRITING, SINCOS), ("-", ":"), strict=True):
             if floor in rows.index:
                 ax.axvline(
                     rows.loc[floor, "nanoseconds_per_item"], color="#999999", ls=dash, lw=0.8
                 )
-        unit = rows["unit"].iloc[0]
+        unit = rows["unit"].drop(MULTIPLY_ADD, errors="ignore").iloc[0]
         ax.set(xscale="log", title=task, xlabel=f"ns a {unit}", yticks=range(len(names)))
     panels[0, 0].set_yticklabels(names)
     panels[0, 0].set_ylim(-0.7, len(names) - 0.3)

@@ -1,5 +1,6 @@
 """Table 1 of the paper: iterations and seconds, under its own protocol and under the other one."""
 
+import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -141,8 +142,13 @@ def counted(case: PaperCase, count: int, protocol: Protocol, name: str) -> dict[
     return {
         "iterations": iterations(curve),
         "tolerance": curve.solve_report.tolerance if curve.solve_report else np.nan,
-        **{f"{key}{part}": int(n) for part, found in parts.items() for key, n in found.items()},
+        **{f"{key}{part}": _whole(n) for part, found in parts.items() for key, n in found.items()},
     }
+
+
+def _whole(count: float) -> float:
+    """An integer, or NaN: not every set-up is counted."""
+    return count if math.isnan(count) else int(count)
 
 
 def _papers(row: PaperRow, name: str) -> dict[str, Any]:

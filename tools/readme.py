@@ -1,7 +1,8 @@
 """Quote measurements in the README and in docs: ``python -m tools.readme [--adopt results]``.
 
 Text between ``<!-- begin NAME -->`` and ``<!-- end NAME -->`` is generated from ``results/reference``; --adopt
-first takes the tables of a finished run as the new reference.
+first takes the tables of a finished run as the new reference.  The command that the README shows is run, and its
+picture drawn.
 """
 
 from __future__ import annotations
@@ -9,21 +10,33 @@ from __future__ import annotations
 import argparse
 import re
 import shutil
-from collections.abc import Callable
+import subprocess
+import sys
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from tempfile import TemporaryDirectory
+from textwrap import fill
 
-from quatspline.catalogue import PACKAGE, found
+from quatspline.catalogue import PACKAGE, found, ours
+from quatspline.curve import Curve
 from quatspline.findings import targets
 from quatspline.findings.findings import findings, lines, reader
+from quatspline.findings.headlines import headlines
 from quatspline.runs.manifest import MANIFEST, read_json
 from quatspline.system.atomic import replacing
+from tools.robot import robot
 
 ROOT = PACKAGE.parents[1]
 REFERENCE = ROOT / "results" / "reference"
 DOCS = ROOT / "docs"
 PICTURES = DOCS / "images"
-QUOTING = (ROOT / "README.md", DOCS / "index.md")
+QUOTING = (ROOT / "README.md", *(DOCS / f"{page}.md" for page in ("findings", "schemes", "speed")))
 """Files with generated blocks."""
+ROBOT = "examples/robot.csv"
+SHOWN = ("Warning", "Take ")
+TIMES = "ns/sample"
+WIDTH = 108
+"""Characters of a line that a terminal's output is folded to."""
 
 TREATED = re.compile(r"^Schemes?: (.+)\.$", re.M)
 """The line by which a page of docs/mathematics says which schemes it derives."""
@@ -43,24 +56,33 @@ def derivations() -> dict[str, Path]:
     return pages
 
 
-def pages_block() -> str:
-    """Which page treats a scheme."""
-    pages, rows = derivations(), ["| scheme | what it is | page |", "| --- | --- | --- |"]
-    for name, item in found().items():
-        if item.scheme is None:
-            continue
-        page = DOCS / "peers.md" if item.scheme.peer else pages.get(name)
-        if page is None:
-            rows.append(f"| `{name}` | {item.scheme.title} | – |")
-            continue
-        title = page.read_text(encoding="utf-8").partition("\n")[0].removeprefix("# ")
-        link = f"[{title}]({page.relative_to(DOCS).as_posix()})"
-        rows.append(f"| `{name}` | {item.scheme.title} | {link} |")
-    return "\n".join(rows)
+def headlines_block() -> str:
+    """The findings in plain words, from the reference tables."""
+    return "\n".join(lines(headlines(reader(REFERENCE))))
+
+
+def compare_block() -> str:
+    """What the command of the README prints, folded: warnings, the advice in one sentence, and the table.
+
+    Times, which differ from run to run, are left out.
+    """
+    with TemporaryDirectory() as folder:
+        call = [sys.executable, "-m", "quatspline", "compare", ROBOT, "--out", folder]
+        printed = subprocess.run(call, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    above, table = printed.strip().split("\n\n")
+    said = [line for line in above.splitlines() if line.startswith(SHOWN)]
+    shown = [*said, "", *without_times(table.splitlines())]
+    return "\n".join(["```", *(fill(line, WIDTH, subsequent_indent="  ") for line in shown), "```"])
+
+
+def without_times(table: list[str]) -> list[str]:
+    """The rows of a table in text without its last column, nanoseconds; not what is said below it."""
+    width = len(table[0].removesuffix(TIMES).rstrip())
+    return [line[:width] for line in table if len(line) == len(table[0])]
 
 
 def schemes_block() -> str:
-    """The table of schemes and what they claim."""
+    """The table of schemes and what they claim, with links from docs."""
     head = [
         "| scheme | what it is | C^k | order | shaped by | from |",
         "| --- | --- | ---: | ---: | --- | --- |",
@@ -68,15 +90,20 @@ def schemes_block() -> str:
     rows, pages = [], derivations()
     for name, item in found().items():
         s = item.scheme
-        if s is None:
-            rows.append(f"| `{name}` | n/a: {item.problem} | | | | |")
+        if s is None:  # not installed here: the page says where all are named
             continue
         support = "all keyframes" if s.support is None else f"{s.support} keyframes"
-        origin = s.peer or "quatspline"
-        link = pages.get(name)
-        shown = f"[`{name}`]({link.relative_to(ROOT).as_posix()})" if link else f"`{name}`"
-        rows.append(f"| {shown} | {s.title} | {s.continuity} | {s.order} | {support} | {origin} |")
+        link = DOCS / "peers.md" if s.peer else pages.get(name)
+        shown = f"[`{name}`]({link.relative_to(DOCS).as_posix()})" if link else f"`{name}`"
+        rows.append(
+            f"| {shown} | {s.title} | {s.continuity} | {s.order} | {support} | {_origin(name, s)} |"
+        )
     return "\n".join(head + rows)
+
+
+def _origin(name: str, scheme: type[Curve]) -> str:
+    """Whose a scheme is: a library's, this project's own design, or an implementation of a publication here."""
+    return scheme.peer or ("quatspline (ours)" if ours(name) else "quatspline")
 
 
 def speed_block() -> str:
@@ -87,16 +114,17 @@ def speed_block() -> str:
 
 
 BLOCKS: dict[str, Callable[[], str]] = {
+    "compare": compare_block,
+    "headlines": headlines_block,
     "findings": findings_block,
     "speed": speed_block,
     "schemes": schemes_block,
-    "pages": pages_block,
 }
 
 
-def renewed(text: str) -> str:
+def renewed(text: str, blocks: Mapping[str, Callable[[], str]] = BLOCKS) -> str:
     """A file's text with every generated block written anew."""
-    for name, block in BLOCKS.items():
+    for name, block in blocks.items():
         begin, end = f"<!-- begin {name} -->\n", f"<!-- end {name} -->"
         if begin in text:
             before, rest = text.split(begin, 1)
@@ -124,6 +152,7 @@ def main() -> None:
     for file in QUOTING:
         with replacing(file) as aside:
             aside.write_text(renewed(file.read_text(encoding="utf-8")), encoding="utf-8")
+    robot(ROOT / ROBOT, PICTURES / "robot.png")
 
 
 if __name__ == "__main__":

@@ -16,7 +16,9 @@ from mkdocs.plugins import get_plugin_logger
 from mkdocs.structure.files import File, Files
 
 ROOT = Path(__file__).resolve().parents[2]
-REFERENCES, CHANGES = "references.md", "changelog.md"
+REFERENCES = "references.md"
+AT_ROOT = {"CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md"}
+"""Pages that stand at the root of a checkout."""
 SHOWN = ("author", "year", "title", "journal", "booktitle", "volume", "pages", "note")
 """Fields of an entry that its line prints, in this order."""
 
@@ -27,6 +29,16 @@ CITATION = re.compile(CODE + r"|\[(?P<keys>@[\w:]+(?:; *@[\w:]+)*)\]", re.M | re
 LINK = re.compile(
     CODE + r"|\[(?P<text>[^\]]+)\]\((?P<target>\.\./[^)#]+)(?P<anchor>#[^)]*)?\)", re.M | re.S
 )
+FROM_ROOT = re.compile(CODE + r"|\]\((?P<file>(?:docs/)?(?P<page>[\w/-]+\.md))", re.M | re.S)
+RELATION = r"=|\\(?:approx|le|ge|equiv|mapsto|leftarrow|Rightarrow)(?![a-z])"
+BREAK = re.compile(
+    r"(?P<open>\\left(?![a-z])|\\begin\{\w+\*?\}|\\?[{(\[])|(?P<close>\\right(?![a-z])|\\end\{\w+\*?\}|\\?[})\]])"
+    rf"|(?P<space>\\q?quad)|(?P<before>{RELATION}|(?<![\^_,])[+-]|\\(?:exp|ln)(?![a-z]))"
+)
+"""What opens and closes a group, and where a formula may be broken."""
+SIGN = re.compile(r"^\s*[+-](?=.*\S)")
+LONE = re.compile(rf"\s*(?:{RELATION}|[+-])?\s*")
+"""What does not stand on a line by itself."""
 FONT = re.compile(r"\\math(bb|bf|sf) ?([A-Za-z])")
 UNIT = re.compile(r"(?<=\d)(?=dd|cc|mm|cm|em|ex|sp|bp|pc|pt|mu)")
 """A number before two letters that the converter takes for a length, as in 2dd."""
@@ -42,8 +54,9 @@ formulas: dict[str, list[str]] = {}
 
 
 def on_files(files: Files, config: Any) -> Files:
-    """Add the changelog, which stands at the root, and the references."""
-    files.append(File.generated(config, CHANGES, abs_src_path=str(ROOT / "CHANGELOG.md")))
+    """Add the pages that stand at the root, and the references."""
+    for source, place in AT_ROOT.items():
+        files.append(File.generated(config, place, abs_src_path=str(ROOT / source)))
     files.append(File.generated(config, REFERENCES, content=_references()))
     return files
 
@@ -52,6 +65,8 @@ def on_page_markdown(text: str, page: Any, **_: Any) -> str:
     """Resolve citations and links out of docs, and take formulas out of Markdown's way."""
     place = page.file.src_uri
     up = "../" * place.count("/")
+    if place in AT_ROOT.values():
+        text = FROM_ROOT.sub(lambda m: m["code"] or f"]({AT_ROOT.get(m['file'], m['page'])}", text)
     text = CITATION.sub(lambda m: m["code"] or _cited(m["keys"], up, place), text)
     text = LINK.sub(lambda m: m["code"] or _linked(m, place), text)
     kept = formulas[place] = []
@@ -72,18 +87,38 @@ def on_page_content(content: str, page: Any, **_: Any) -> str:
 
 
 def _mathml(source: str, block: bool, place: str) -> str:
-    tags = TAG.findall(source)
+    if not block:
+        return _converted(source, "inline", place)
+    made = "".join(_converted(part, "block", place) for part in parts(TAG.sub("", source)))
+    number = "".join(f'<span class="number" id="{t}">({t})</span>' for t in TAG.findall(source))
+    return f'<span class="equation"><span class="parts">{made}</span>{number}</span>'
+
+
+def _converted(source: str, display: str, place: str) -> str:
     try:
-        made = convert(_dialect(TAG.sub("", source)), display="block" if block else "inline")
+        made = str(convert(_dialect(SIGN.sub(r"{}\g<0>", source)), display=display))
     except Exception as error:  # of many kinds, by what is malformed
         log.warning("%s: %s in the formula %r", place, error, source)
         return html.escape(source)
     if left := UNREAD.findall(made):
         log.warning("%s: %s is left of the formula %r", place, left[0], source)
-    if not block:
-        return str(made)
-    number = "".join(f'<span class="number" id="{t}">({t})</span>' for t in tags)
-    return f'<span class="equation">{made}{number}</span>'
+    return made
+
+
+def parts(source: str) -> list[str]:
+    """A displayed formula in pieces between which a narrow page may break its line.
+
+    Breaks stand after a wide space, before relations, sums and the factors of a product of exponentials, outside
+    braces, brackets and environments.
+    """
+    pieces, depth, start = [], 0, 0
+    for m in BREAK.finditer(source):
+        depth += bool(m["open"]) - bool(m["close"])
+        at = m.end() if m["space"] else m.start()
+        if depth == 0 and (m["space"] or m["before"]) and not LONE.fullmatch(source[start:at]):
+            pieces.append(source[start:at])
+            start = at
+    return [piece for piece in (*pieces, source[start:]) if piece.strip()]
 
 
 def _dialect(source: str) -> str:
@@ -107,8 +142,8 @@ def _linked(m: re.Match[str], place: str) -> str:
     target = ((docs / place).parent / m["target"]).resolve()
     if target.is_relative_to(docs):
         return m[0]
-    if target == ROOT / "CHANGELOG.md":
-        return f"[{m['text']}]({'../' * place.count('/')}{CHANGES})"
+    if target.parent == ROOT and (known := AT_ROOT.get(target.name)):
+        return f"[{m['text']}]({'../' * place.count('/')}{known})"
     if not target.exists():
         log.warning("%s links to %s, which does not exist", place, m["target"])
     return m["text"]

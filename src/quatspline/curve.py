@@ -112,7 +112,8 @@ class Curve(abc.ABC):
     orders: tuple[int, ...] = (0, 1, 2)
     """Orders that a call offers; a peer may lack some."""
     operations: Operations = UNSTATED
-    """Counts that no machine changes, e.g. ``Operations(exps=Per(sample=3), logs=Per(keyframe=1))``."""
+    """Counts that no machine changes, e.g. ``Operations(exps=Per(sample=3), logs=Per(keyframe=1))``; those of
+    compiled schemes are counted."""
     departs: ClassVar[dict[str, str]] = {}
     """Conformance checks that a scheme does not pass, a peer run as published as a rule, each with its reason."""
     rescue: ClassVar[dict[str, Any]] = {}
@@ -129,8 +130,9 @@ class Curve(abc.ABC):
         if "name" not in cls.__dict__:
             file = getattr(sys.modules.get(cls.__module__), "__file__", None) or cls.__name__
             cls.name = Path(file).stem.replace("_", "-")
-        if not isinstance(cls.operations, Operations):
-            raise TypeError(f"operations of {cls.name} is no Operations: {cls.operations!r}")
+        stated = cls.__dict__.get("operations", UNSTATED)
+        if not (isinstance(stated, Operations) or hasattr(stated, "__get__")):
+            raise TypeError(f"operations of {cls.name} is no Operations: {stated!r}")
 
     def __init__(
         self,

@@ -1,6 +1,7 @@
-"""Operations: what a scheme states that it executes, whatever the machine.
+"""Operations: what a scheme executes, whatever the machine.
 
-A class body reads ``operations = Operations(exps=Per(sample=3), logs=Per(segment=1))``.
+Those of compiled schemes are counted by running their kernels (`counted`).  A scheme in numpy may state its own,
+``operations = Operations(exps=Per(sample=3), logs=Per(keyframe=1))``.
 """
 
 from __future__ import annotations
@@ -16,24 +17,19 @@ class Per:
     Attributes
     ----------
     sample : an evaluated orientation
-    keyframe : of the set-up, as all that follow
-    inner_keyframe : one with neighbours on both sides; all of a closed curve
-    segment, knot : a knot is an end of segments, a closed curve's last being its first again
-    solve : whatever the number of keyframes
+    keyframe : of the set-up, one of many keyframes; NaN where a set-up is not counted
+    iteration : one of many keyframes in an update of an iteration, besides
 
     Examples
     --------
     >>> import quatspline as qs
     >>> qs.scheme("squad").operations.logs
-    Per(sample=0, keyframe=6, inner_keyframe=0, segment=0, knot=0, solve=0)
+    Per(sample=0, keyframe=7, iteration=0)
     """
 
     sample: float = 0
     keyframe: float = 0
-    inner_keyframe: float = 0
-    segment: float = 0
-    knot: float = 0
-    solve: float = 0
+    iteration: float = 0
 
 
 NONE = Per()
@@ -45,16 +41,17 @@ class Operations:
 
     Attributes
     ----------
-    slerps, exps, logs, roots : roots are square roots
+    slerps, exps, logs, roots : roots are square roots, also those within the others
     others : counts of other operations by name
-    iteration : what every update of an iteration takes besides; it has no iteration of its own
 
     Examples
     --------
     >>> import quatspline as qs
-    >>> quartic = qs.Operations(exps=qs.Per(sample=3), logs=qs.Per(segment=1))
-    >>> quartic == qs.scheme("quartic").operations
-    True
+    >>> quartic = qs.scheme("quartic").operations
+    >>> quartic.exps, quartic.logs
+    (Per(sample=3, keyframe=0, iteration=0), Per(sample=0, keyframe=1, iteration=0))
+    >>> quartic.kinds["multiplications"].sample
+    106
     """
 
     slerps: Per = NONE
@@ -62,15 +59,10 @@ class Operations:
     logs: Per = NONE
     roots: Per = NONE
     others: Mapping[str, Per] = field(default_factory=dict)
-    iteration: Operations | None = None
-
-    def __post_init__(self) -> None:
-        if self.iteration is not None and self.iteration.iteration is not None:
-            raise ValueError("iteration: an iteration has no iteration of its own")
 
     @property
     def kinds(self) -> dict[str, Per]:
-        """All counts by the name of the operation, those of an iteration apart."""
+        """All counts by the name of the operation."""
         own = {"slerps": self.slerps, "exps": self.exps, "logs": self.logs, "roots": self.roots}
         return own | dict(self.others)
 

@@ -1,4 +1,4 @@
-"""SegmentCurve: curves that are one row of constants a segment, in plain Python or compiled.
+"""SegmentCurve: curves that are one row of constants per segment, in plain Python or compiled.
 
 A scheme of this kind supplies a fit kernel (keyframes -> constants) or computes the constants
 itself, and names the family whose functions evaluate them.  What is compiled, one driver
@@ -15,6 +15,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from quatspline.counted import Counted
 from quatspline.curve import Curve
 from quatspline.engines import engine, plain
 from quatspline.inputs.arrays import BoolArray, FloatArray
@@ -49,6 +50,7 @@ class SegmentCurve(Curve):
     """A curve of segments with constants: see the module; subclasses fit, this evaluates."""
 
     family: Family
+    operations = Counted()
     measures_itself: bool = False
     """Whether its fit kernel reports what the constants that it wrote miss at keyframes."""
     batched = True

@@ -14,7 +14,6 @@ PUBLIC = {"_replace", "_asdict", "_fields", "_exit"}
 """Of named tuples, which must not take names from fields, and of the system."""
 
 EXCEPTIONS = {
-    ("counting.py", "_solve"): "put in the place of what runs a fit, in a process for that alone",
     ("schemes/test_spherical_average.py", "_slope"): "of a kernel, held against 40 digits",
     ("instruments/test_budget.py", "_work"): "of the forecast",
     ("instruments/test_cost.py", "_fit"): "watched, for how often it is called",
@@ -22,7 +21,6 @@ EXCEPTIONS = {
     ("instruments/test_cost.py", "_waiting"): "tells whether all of a curve is fitted",
     ("schemes/test_monotone_quintic.py", "_waiting"): "tells whether all of a curve is fitted",
     ("report/test_compare.py", "_fit"): "replaced by one that fails",
-    ("report/test_choosing.py", "_all_counted"): "of the experiment",
     ("report/test_choosing.py", "_convergence"): "of the experiment",
     ("report/test_choosing.py", "_edge_cases"): "of the experiment",
     ("report/test_choosing.py", "_spread"): "of the experiment",

@@ -1,12 +1,7 @@
-"""Counts of operations: by hand, and by running the kernels as Python with every call counted."""
+"""Counts of operations in tables: the published protocols by hand, beside what running the kernels counts."""
 
 from __future__ import annotations
 
-import json
-import os
-import subprocess
-import sys
-from pathlib import Path
 from typing import Any
 
 import pandas as pd
@@ -14,12 +9,9 @@ import pytest
 
 from quatspline.catalogue import load, scheme, shipped
 from quatspline.curve import Curve
-from quatspline.operations import Operations, Per
 from quatspline.options import among
-from quatspline.timing.operations import executed, iterations, per_keyframe, per_sample
+from quatspline.timing.operations import executed, per_keyframe, per_sample
 from quatspline.trajectories.paper import CASES, SOLVE
-
-COUNTING = Path(__file__).parents[1] / "counting.py"
 
 table1 = load(shipped("experiments") / "table1.py", "experiment")
 
@@ -70,53 +62,11 @@ def test_what_is_printed_apart_adds_up() -> None:
                 assert found[operation] == sum(parts)
 
 
-FITS = [
-    *(("quartic",), ("slerp",)),
-    *(("nielson", "change"), ("nielson", "residual"), ("kim", "change")),
-]
-SOLVES = [(name, case, *stop) for name, *stop in FITS for case in CASES]
-
-
-@pytest.fixture(scope="module")
-def counted() -> dict[tuple[str, ...], dict[str, int]]:
-    """What the kernels of fits call, in a process without a compiler."""
-    command = [sys.executable, str(COUNTING), *(",".join(solve) for solve in SOLVES)]
-    environment = os.environ | {"NUMBA_DISABLE_JIT": "1"}
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
-    blank = dict.fromkeys(("slerps", "exps", "logs"), 0)
-    found = (blank | json.loads(line) for line in done.stdout.splitlines())
-    return dict(zip(SOLVES, found, strict=True))
-
-
-@pytest.mark.parametrize("solve", SOLVES, ids="-".join)
-def test_counts_are_what_the_kernels_execute(
-    solve: tuple[str, ...], counted: dict[tuple[str, ...], dict[str, int]]
-) -> None:
-    found = dict(counted[solve])
-    curve = solved(*solve)
-    assert iterations(curve) == found.pop("iterations")
-    assert executed(curve, samples=0).total == found
-
-
 def test_many_keyframes_take_the_same_each() -> None:
     curve = solved("nielson", "teapot")
     assert per_sample(curve) == {"slerps": 6, "exps": 0, "logs": 0}
     assert per_keyframe(curve) == {"slerps": 40 * 2 + 3 + 2, "exps": 0, "logs": 3}
     assert executed(curve, 0).total["slerps"] == 6 * per_keyframe(curve)["slerps"]
-
-
-def test_every_unit_is_counted_as_often_as_there_are_some() -> None:
-    """Of the closed teapot's 6 keyframes and of the open key's 5, in two solves and three samples."""
-    each = Per(sample=1, keyframe=10, inner_keyframe=100, segment=1e3, knot=1e4, solve=1e5)
-    for case, inner, segments in (("teapot", 6, 6), ("key", 3, 4)):
-        curve = solved("nielson", case)
-        keys, updates = curve.keyframes.count, iterations(curve)
-        set_up = 10 * keys + 100 * inner + 1e3 * segments + 1e4 * (segments + 1) + 1e5
-        curve.operations = Operations(exps=each, iteration=Operations(exps=Per(keyframe=1)))
-        counts = executed(curve, samples=3, solves=2)
-        assert counts.updates["exps"] == 3 + 2 * updates * keys
-        assert counts.rest["exps"] == 2 * set_up
-        assert per_keyframe(curve)["exps"] == 10 + 100 + 1e3 + 1e4 + updates
 
 
 def test_counts_in_english_are_refused() -> None:
@@ -126,12 +76,6 @@ def test_counts_in_english_are_refused() -> None:
 
         class Told(Curve):
             operations = {"exps per sample": 3}  # type: ignore[assignment]
-
-
-def test_an_iteration_has_no_iteration() -> None:
-    once = Operations(exps=Per(keyframe=1))
-    with pytest.raises(ValueError, match="an iteration has no iteration of its own"):
-        Operations(iteration=Operations(iteration=once))
 
 
 def test_the_table_prints_them_apart() -> None:

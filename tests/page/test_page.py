@@ -27,7 +27,8 @@ from quatspline.page import Scene, motion, write_page
 from quatspline.page.document import embedded
 from quatspline.page.glossary import GLOSSARY
 from quatspline.page.plots import scheme_look
-from quatspline.page.sections import RANKINGS, SECTIONS
+from quatspline.page.rankings import RANKINGS
+from quatspline.page.sections import SECTIONS
 from quatspline.page.table1 import duration
 from quatspline.quaternion import exp
 from quatspline.runs.experiment import files
@@ -119,7 +120,7 @@ def test_the_page_holds_every_table_as_it_is(elements: Elements, page_folder: Pa
 
 def test_what_a_run_did_not_make_leaves_no_hole(elements: Elements, tmp_path: Path) -> None:
     made = {a["id"] for tag, a, _ in elements.items if tag == "section"}
-    assert {"findings", "player", "table1", "accuracy", "cost", "other", "made"} <= made
+    assert {"findings", "choosing", "motions", "paper", "accuracy", "cost", "other", "made"} <= made
     bare = tmp_path / "bare"
     Results(bare).table("x", pd.DataFrame({"a": [1]}))
     page = Elements(write_page(bare, scenes=[]).read_text(encoding="utf-8"))

@@ -64,6 +64,9 @@ def test_maps_show_what_the_table_holds(page: Opened) -> None:
     plot.get_by_label("Colour").select_option("rate")
     assert page(drawn + ".z") == pytest.approx([-2, -2, -8, -8])  # coloured by the logarithm
     assert page(drawn + ".text") == ["0.01", "0.01", "1.00e−8", "1.00e−8"]
+    plot.get_by_label("scheme").select_option("hermite")  # it opened where there are data
+    assert page(drawn + ".z") == []
+    assert plot.get_by_text("no data for this choice").count() == 1
 
 
 def test_a_series_is_picked_out_and_axes_are_switched(page: Opened) -> None:
@@ -82,6 +85,47 @@ def test_a_series_is_picked_out_and_axes_are_switched(page: Opened) -> None:
     rows = frame[(frame["scheme"] == "quintic") & (frame["knots"] == "uniform")]
     finest = rows.sort_values("spacing").iloc[0]
     assert page(points) == finest["inner_angle"]
+
+
+def colours(page: Opened, chart: str) -> dict[str, str]:
+    script = f"Object.fromEntries({chart}.data.map((d) => [d.name, d.line.color]))"
+    made: dict[str, str] = page(script)
+    return made
+
+
+def test_eight_lines_are_in_colour_until_others_are_picked(page: Opened) -> None:
+    plot = page.page.locator("#plot-cost-lines")
+    plot.scroll_into_view_if_needed()
+    plot.locator(".main-svg").first.wait_for()
+    chart = "document.querySelector('#plot-cost-lines .chart')"
+    grey = page("quatspline.theme.color('ghost')")
+    first = colours(page, chart)
+    lit = {name for name, color in first.items() if color != grey}
+    assert len(lit) == 8 < len(first)
+    assert {"quartic", "slerp"} <= lit
+    assert first["quartic"] == page("quatspline.plots.seriesColor('quartic')")
+    page(f"{chart}.emit('plotly_legendclick', {{data: {chart}.data, curveNumber: "
+         f"{chart}.data.findIndex((d) => d.name === 'biarc')}})")  # fmt: skip
+    assert colours(page, chart)["biarc"] != grey
+
+
+def test_ratios_are_drawn_as_excess_on_logarithmic_axes(page: Opened) -> None:
+    plot = page.page.locator("#plot-choosing-points")
+    plot.scroll_into_view_if_needed()
+    plot.locator(".main-svg").first.wait_for()
+    point = "document.querySelector('#plot-choosing-points .chart').data.find((d) => d.name === 'kim').y[0]"
+    torque = Results(REFERENCE).read_table("choosing").set_index("scheme").loc["kim", "torque"]
+    assert page(point) == pytest.approx(torque - 1.0, rel=1e-12)
+    plot.get_by_label("log y").uncheck()
+    assert page(point) == torque
+    plot.get_by_label("log y").check()
+
+
+def test_the_player_has_the_colours_of_the_plots(page: Opened) -> None:
+    key = "getComputedStyle(document.querySelector('#player .key')).borderTopColor"
+    rgb = page("quatspline.plots.seriesColor('quartic')").lstrip("#")
+    wanted = ", ".join(str(int(rgb[k : k + 2], 16)) for k in (0, 2, 4))
+    assert page(key) == f"rgb({wanted})"
 
 
 @pytest.mark.parametrize("index", [0, 1])
@@ -158,7 +202,8 @@ def test_the_canvas_shows_the_body_move(page: Opened) -> None:
 
 def test_less_motion_goes_from_keyframe_to_keyframe(opened: Any) -> None:
     page = opened(reduced_motion="reduce")
-    page.page.click("button[name=play]")
+    page.page.select_option("#player select[name=speed]", "0.25")  # keyframes stand for long
+    page.page.click("#player button[name=play]")
     for k in (1, 2):
         page.page.wait_for_function(f"quatspline.player.pose().keyframe === {k}")
 
@@ -170,7 +215,7 @@ def test_tables_sort_filter_and_download(page: Opened, page_folder: Path, tmp_pa
     frame = frame[frame["data"] == "committed"]  # what the page shows at first
 
     def shown() -> list[str]:
-        return table.locator("tbody tr td:first-child").all_inner_texts()
+        return table.locator("tbody tr > :first-child").all_inner_texts()
 
     ranked = frame.sort_values("median", kind="stable")["scheme"].tolist()
     assert shown() == ranked[:15]
@@ -197,7 +242,7 @@ def test_missing_values_come_last_and_text_stays_text(page: Opened) -> None:
     table = tab.locator("#table-unheard-of")
     for expected in (["2", "∞", ""], ["∞", "2", ""]):
         table.get_by_role("button", name="score").click()
-        assert table.locator("tbody tr td:nth-child(2)").all_inner_texts() == expected
+        assert table.locator("tbody tr > :nth-child(2)").all_inner_texts() == expected
     assert EVIL in table.locator("tbody").inner_text()
 
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import doctest
 import inspect
+import os
 import pkgutil
 import re
 import shutil
+import warnings
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -20,10 +22,13 @@ from quatspline import quaternion
 from quatspline.catalogue import FOLDERS, found
 from quatspline.curve import Curve
 from quatspline.engines import engine
+from quatspline.options import declared_by
+from quatspline.page.glossary import column
 from quatspline.runs.experiment import files
 from quatspline.segments import SegmentCurve
 from tools.new_scheme import COMPILED, new_scheme
-from tools.readme import DOCS, PICTURES, QUOTING, ROOT, derivations, pages_block
+from tools.readme import DOCS, QUOTING, REFERENCE, ROBOT, ROOT, compare_block, derivations
+from tools.robot import robot
 from walks import inside, uneven, walk
 
 SOURCE_LINK = re.compile(r"\]\(([^)#:]+)(?:#[^)]*)?\)")
@@ -31,9 +36,19 @@ SRC = re.compile(r'(?:src|<link[^>]* href)="([^"]+)"')
 
 
 def listed() -> set[str]:
-    """In-house schemes that the README lists; a file newly put into baselines/ owes no page yet."""
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    return set(re.findall(r"^\| \[?`([\w-]+)`.*\| quatspline \|$", readme, re.M))
+    """In-house schemes that the docs list; a file newly put into baselines/ owes no page yet."""
+    return set(
+        re.findall(r"^\| \[?`([\w-]+)`.*\| quatspline(?: \(ours\))? \|$", schemes_page(), re.M)
+    )
+
+
+def schemes_page() -> str:
+    return (DOCS / "schemes.md").read_text(encoding="utf-8")
+
+
+def front() -> str:
+    """The README up to the links."""
+    return (ROOT / "README.md").read_text(encoding="utf-8").partition("## Read on")[0]
 
 
 def test_every_scheme_has_a_page() -> None:
@@ -41,14 +56,6 @@ def test_every_scheme_has_a_page() -> None:
     assert listed()
     assert not listed() - pages.keys()
     assert not pages.keys() - found().keys()
-
-
-def test_the_index_says_what_would_be_generated() -> None:
-    """Row by row: a file newly put into baselines/ owes no row yet."""
-    index = (DOCS / "index.md").read_text(encoding="utf-8")
-    block = index.split("<!-- begin pages -->\n")[1].split("<!-- end pages -->")[0]
-    assert len(block.splitlines()) > len(listed())
-    assert not set(block.splitlines()) - set(pages_block().splitlines())
 
 
 def test_pages_number_their_equations_once() -> None:
@@ -69,18 +76,49 @@ def test_equations_that_pages_cite_exist() -> None:
 @pytest.mark.parametrize("file", QUOTING, ids=lambda file: file.name)
 def test_links_of_the_sources_exist(file: Path) -> None:
     targets = SOURCE_LINK.findall(file.read_text(encoding="utf-8"))
-    assert targets
     assert not [target for target in targets if not (file.parent / target).exists()]
 
 
-def test_the_readme_shows_a_picture() -> None:
-    assert (PICTURES / "figure3.png").stat().st_size > 10_000
+@pytest.mark.parametrize(
+    "file", [ROOT / "README.md", *DOCS.rglob("*.md")], ids=lambda file: file.name
+)
+def test_pictures_exist_and_are_described(file: Path) -> None:
+    pictures = re.findall(r"!\[([^\]]*)\]\(([^)]+)\)", file.read_text(encoding="utf-8"))
+    assert all(text for text, _ in pictures)
+    assert all((file.parent / place).stat().st_size > 10_000 for _, place in pictures)
+
+
+def test_the_readme_is_short() -> None:
+    assert len(front().split()) <= 500
+    assert front().index("```") < 1000
+
+
+def test_the_robot_waits(tmp_path: Path) -> None:
+    """As the picture's caption and the notebook say."""
+    motion = qs.read_motion(ROOT / ROBOT)
+    t, q = motion.times, motion.quaternions[:, 0]
+    still = (q[:-1] == q[1:]).all(axis=1)
+    np.testing.assert_array_equal(t[:-1][still], [2.5, 7.4])
+    np.testing.assert_array_equal(t[1:][still], [4.0, 9.4])
+    picture = tmp_path / "robot.png"
+    robot(ROOT / ROBOT, picture)
+    assert picture.read_bytes()[:4] == b"\x89PNG"
+
+
+def test_the_readme_shows_what_compare_prints() -> None:
+    """Line by line, of the schemes that the docs list: one put into baselines/ may change the advice."""
+    usable = {name for name, item in found().items() if item.scheme is not None}
+    if added := usable - set(re.findall(r"^\| \[?`([\w-]+)`", schemes_page(), re.M)):
+        pytest.skip(f"the README's comparison knows nothing of {', '.join(sorted(added))}")
+    block = front().split("<!-- begin compare -->\n")[1].split("\n<!-- end compare -->")[0]
+    assert block == compare_block()
 
 
 # -- examples -----------------------------------------------------------------------------------
 
 
-def test_the_readme_example_runs() -> None:
+def test_the_readme_example_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     blocks = re.findall(r"^```python\n(.*?)^```", readme, re.M | re.S)
     assert blocks
@@ -88,8 +126,37 @@ def test_the_readme_example_runs() -> None:
     for block in blocks:
         exec(block, names)
     curve = names["curve"]
-    np.testing.assert_allclose(np.abs(curve(2.5) @ [0.6, 0, 0.8, 0]), 1.0, atol=1e-15)
-    assert curve([0.1, 2.0], 1).shape == (2, 3)  # as the comment beside it says
+    assert curve([1.7, 3.0]).shape == (2, 4)
+    assert np.abs(curve(3.0, 1)).max() < 1e-9  # it waits
+    assert curve([1.7, 3.0], 2).shape == (2, 3)
+
+
+def test_start_here_runs(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(ROOT)
+    names: dict[str, Any] = {}
+    for block in re.findall(
+        r"^```python\n(.*?)^```", (DOCS / "start.md").read_text("utf-8"), re.M | re.S
+    ):
+        exec(block, names)
+    waiting, most = capsys.readouterr().out.splitlines()
+    assert float(waiting) < 1e-9
+    assert re.fullmatch(r"at most \d+ °/s and \d+ °/s²", most)
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")  # of the tool and its dependencies
+def test_the_notebook_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In a kernel of its own, with the sources that are tested here."""
+    nbformat, nbclient = (pytest.importorskip(name) for name in ("nbformat", "nbclient"))
+    places = map(str, (*qs.__path__, os.environ.get("PYTHONPATH", "")))
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(Path(next(places)).parent), *places]))
+    book = nbformat.read(ROOT / "examples" / "first_curve.ipynb", as_version=4)
+    resources = {"metadata": {"path": str(ROOT / "examples")}}
+    nbclient.NotebookClient(book, timeout=600, resources=resources).execute()
+    printed = [out for cell in book.cells for out in cell.get("outputs", ())]
+    assert any("image/png" in out.get("data", {}) for out in printed)
+    assert "while it waits" in printed[-1]["text"]
 
 
 def my_cubic() -> str:
@@ -202,6 +269,49 @@ def test_pages_build_and_load_nothing_from_elsewhere(tmp_path: Path) -> None:
         assert not [source for source in SRC.findall(text) if "//" in source], page
         assert "$$" not in text
     assert "<math" in (tmp_path / "mathematics" / "quartic.html").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """All pages as HTML."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)
+        folder = tmp_path_factory.mktemp("site")
+        build(DOCS, folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def reference(site: Path) -> str:
+    """The page of the API."""
+    return (site / "api.html").read_text(encoding="utf-8")
+
+
+def test_the_page_of_results_explains_columns(site: Path) -> None:
+    text = (site / "results.html").read_text(encoding="utf-8")
+    explained = text.split("Columns of <code>accuracy.csv</code>")[1].split("</table>")[0]
+    assert f"<td>{column('accuracy', 'inner_angle').meaning}</td>" in explained
+    told = set(re.findall(r"Columns of <code>([\w-]+)\.csv</code>", text))
+    assert told == {file.stem for file in REFERENCE.glob("*.csv")}
+
+
+@pytest.mark.parametrize("module", ["quatspline", "quatspline.motion"])
+def test_the_api_page_has_every_public_name(reference: str, module: str) -> None:
+    """Names of `quatspline.motion` that the package itself hands on stand under the package."""
+    told = set(re.findall(r'id="(quatspline[\w.]*)"', reference))
+    names = {name for name in import_module(module).__all__ if name != "__version__"}
+    assert {n for n in names if not told & {f"{module}.{n}", f"quatspline.{n}"}} == set()
+
+
+@pytest.mark.parametrize("name", sorted(listed()))
+def test_the_api_page_has_every_option(reference: str, name: str) -> None:
+    section = reference.split(f'id="options-{name}"')[1].split("<h3")[0]
+    rows = re.findall(r"<tr>(.*?)</tr>", section, re.S)
+    cells = [re.findall(r"<td>(.*?)</td>", row, re.S) for row in rows]
+    options = {
+        row[0].removeprefix("<code>").removesuffix("</code>") for row in cells if row and row[-1]
+    }
+    assert options == declared_by(qs.scheme(name)).keys()
 
 
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")

@@ -32,7 +32,7 @@ def automatic(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("degrees", [5.0, 40.0, 150.0])
 def test_engines_agree(scheme, degrees: float, monkeypatch: pytest.MonkeyPatch) -> None:
     n = min(count_of(scheme), 5)
-    repeats = scheme.iterative or scheme.operations.logs.segment > MANY
+    repeats = scheme.iterative or scheme.operations.logs.keyframe > MANY
     for closed in (False, True) if scheme.closable else (False,):
         t = knots_of(scheme, n + closed)
         q = walk(n, degrees, seed=3)
@@ -156,7 +156,8 @@ def test_one_order_that_is_compiled_commits_no_other(automatic, monkeypatch) -> 
 
 def test_windows_of_a_long_curve_count_where_they_are_fitted(automatic, monkeypatch) -> None:
     """Nothing before, so that a look costs no compiling; then each, until they repay it."""
-    monkeypatch.setattr(engine, "REPAYS", 2.5 * FITTED * CHUNK)
+    for name in ("REPAYS", "LOADS"):
+        monkeypatch.setattr(engine, name, 2.5 * FITTED * CHUNK)
     curve = fresh_scheme()(None, np.tile([1.0, 0.0, 0.0, 0.0], (5 * CHUNK, 1)))
     assert curve.fit_kernel.work == 0.0
     machine = []

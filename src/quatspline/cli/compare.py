@@ -36,7 +36,10 @@ KEPT = (
     " left_out_rms and left_out_largest are the root mean square and the largest angle (rad) at the frames that "
     "--keep leaves out."
 )
-BARS = "Torque energy over the least of all schemes compared; hollow: not C2 as measured here.\n"
+BARS = (
+    "Torque energy over the least of all schemes compared, with the continuity as measured here; hollow: third-party "
+    "schemes.\n"
+)
 RATES = "Norms of the angular velocity and acceleration over time; grey lines are keyframes.\n"
 
 

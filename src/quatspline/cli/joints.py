@@ -105,7 +105,7 @@ def _measured(
     out: BoolArray,
     options: Mapping[str, Any],
 ) -> list[Row]:
-    """A row a scheme, with what was measured of each joint."""
+    """A row per scheme, with what was measured of each joint."""
     from quatspline import catalogue
     from quatspline.instruments.trials import attempted
     from quatspline.options import among

@@ -6,11 +6,14 @@ import ast
 import inspect
 from collections.abc import Iterable, Sequence
 from types import UnionType
-from typing import Annotated, Any, Literal, Union, get_args, get_origin
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Union, get_args, get_origin
 
 from quatspline import catalogue
 from quatspline.options import EXACT, checked, declared_by
 from quatspline.system.stdout import say
+
+if TYPE_CHECKING:
+    from quatspline.curve import Curve
 
 KINDS = {int: "a whole number", float: "a number", bool: "True or False", type(None): "None"}
 
@@ -59,14 +62,17 @@ def of_schemes(names: Sequence[str] | None, pairs: Iterable[str]) -> dict[str, A
 def command(name: str) -> int:
     """Serve ``quatspline options``: what a scheme takes, by default what, and its own words on it."""
     cls = catalogue.scheme(name)
-    rows = [
-        (f"{option}={p.default}", _kind(p.annotation)) for option, p in declared_by(cls).items()
-    ]
+    rows = [(f"{option}={default}", kind) for option, default, kind in told(cls)]
     width = max((len(default) for default, _ in rows), default=0)
     say([f"{name}: {cls.title}", ""])
     say(f"  --option {default:{width}}  {kind}" for default, kind in rows)
     say(["", *inspect.cleandoc(cls.__doc__ or "").splitlines()] if rows else ["  no options"])
     return 0
+
+
+def told(scheme: type[Curve]) -> list[tuple[str, Any, str]]:
+    """The options of a scheme: name, default, and what values it takes, in words."""
+    return [(name, p.default, _kind(p.annotation)) for name, p in declared_by(scheme).items()]
 
 
 def _kind(kind: Any) -> str:

@@ -22,7 +22,7 @@ def played(motion: Motion, table: pd.DataFrame, by: str, every: int, title: str)
     Parameters
     ----------
     motion : the truth
-    table : a row a scheme, with its error in the column ``by``
+    table : a row per scheme, with its error in the column ``by``
     every : which frames are kept
     title : what a reader calls the motion
     """

@@ -1,4 +1,4 @@
-"""One exponential a segment: quintic rotation vectors in the chart of a base orientation.
+"""One exponential per segment: quintic rotation vectors in the chart of a base orientation.
 
 On a segment, with u in [0, 1],
 

@@ -17,6 +17,9 @@ ROW = 0.17
 """Inches a row: the least at which 7-point names do not touch."""
 
 
+SMALL = 7.0
+"""Points of text in cells: the least that prints."""
+
 SHARE = 0.4
 """Of the width of several maps, what their bar takes."""
 
@@ -60,7 +63,7 @@ def label_cells(ax: Any, texts: pd.DataFrame, dark: pd.DataFrame) -> None:
     for i, row in enumerate(texts.to_numpy()):
         for j, text in enumerate(row):
             colour = "white" if dark.iat[i, j] else "black"
-            ax.text(j, i, text, ha="center", va="center", fontsize=5.5, color=colour)
+            ax.text(j, i, text, ha="center", va="center", fontsize=SMALL, color=colour)
 
 
 def scheme_rows(ax: Any, names: Sequence[str], *, shown: bool = True) -> None:

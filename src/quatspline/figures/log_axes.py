@@ -8,9 +8,12 @@ from matplotlib.ticker import MaxNLocator, MultipleLocator
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 from numpy.typing import ArrayLike
 
+from quatspline.figures.scenes import view_axes
 from quatspline.quaternion import FloatArray
 
 _GRID, _TEXT = "#dcdee3", "#374151"
+_LETTER = 0.032
+"""Width of a letter, about, over the extent of what is drawn."""
 _BOTH = np.array([-1.0, 1.0])
 
 
@@ -38,21 +41,48 @@ def draw_log_curves(
     keys = np.asarray(keyframes, dtype=np.float64)
     _log_axes(ax, np.concatenate([*lines, keys]), elev, azim)
     floor = ax.get_zlim()[0]
-    for (_, color, label), line in zip(curves, lines, strict=True):
+    for (_, color, _), line in zip(curves, lines, strict=True):
         ax.plot(line[:, 0], line[:, 1], floor, color=color, alpha=0.18, lw=0.7, zorder=1)
-        ax.plot(*line.T, color=color, label=label, lw=linewidth, zorder=3)
+        ax.plot(*line.T, color=color, lw=linewidth, zorder=3)
     for x, y, z in keys:
         ax.plot([x, x], [y, y], [floor, z], color=_GRID, lw=0.6, zorder=2)
     style = {"marker": "o", "ls": "none", "mfc": "white", "mec": "black", "mew": 0.9, "ms": 4.0}
-    ax.plot(*keys.T, label="keyframes", zorder=4, **style)
-    # above the box, in rows of three: nothing of the grid runs through it
-    ax.legend(
-        loc="upper center",
-        bbox_to_anchor=(0.5, 1.0),
-        ncols=3,
-        handlelength=1.4,
-        columnspacing=1.0,
+    ax.plot(*keys.T, zorder=4, **style)
+    for k, (_, color, label) in enumerate(curves):
+        _name(ax, lines[k], [line for line in lines if line is not lines[k]], label, color)
+
+
+def _name(
+    ax: Axes3D, line: FloatArray, others: Sequence[FloatArray], label: str, color: Any
+) -> None:
+    """Write a curve's name beside it, over as few points of curves and as far from the others as that goes."""
+    seen = view_axes(ax.elev, ax.azim)[:2].T
+    flat, drawn = line @ seen, np.concatenate([line, *others]) @ seen
+    gaps = [np.linalg.norm(flat - _nearest(flat, other @ seen), axis=1) for other in others]
+    gap = np.min(gaps, axis=0) if gaps else np.zeros(len(line))
+    unit = _LETTER * np.ptp(drawn, axis=0).max()
+    half = unit * np.array([0.5 * len(label) + 1.0, 1.2])
+    best = min(
+        (_covered(flat[at] + [side * (half[0] + unit), 0.0], half, drawn), -gap[at], at, side)
+        for at in range(0, len(line), 10)
+        for side in (1, -1)
     )
+    *_, at, side = best
+    place = {"ha": "left" if side > 0 else "right", "va": "center", "zorder": 5}
+    ax.text(*line[at], f"  {label}  ", color=color, **place)
+
+
+def _covered(centre: FloatArray, half: FloatArray, points: FloatArray) -> int:
+    """How many points (k, 2) lie in a box."""
+    return int((np.abs(points - centre) < half).all(axis=1).sum())
+
+
+def _nearest(line: FloatArray, other: FloatArray) -> FloatArray:
+    """The point of another curve (k, 2) nearest to each point of a curve (m, 2), as the camera sees them."""
+    from scipy.spatial import KDTree
+
+    points: FloatArray = other[KDTree(other).query(line)[1]]
+    return points
 
 
 def _log_axes(ax: Axes3D, points: FloatArray, elev: float, azim: float) -> None:

@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 from quatspline.catalogue import scheme
 from quatspline.figures import style
 from quatspline.figures.log_axes import draw_log_curves
 from quatspline.figures.meshes import Mesh, key_mesh, teapot_mesh
-from quatspline.figures.scenes import BRASS, PORCELAIN, draw_frames
+from quatspline.figures.scenes import BRASS, draw_frames
 from quatspline.options import among
 from quatspline.quaternion import FloatArray
 from quatspline.trajectories.paper import RECONSTRUCTED, SOLVE, PaperCase
@@ -37,7 +38,10 @@ VIEWS: dict[str, dict[str, Any]] = {
     "key": {"elev": 18.0, "azim": -80.0, "ground": -0.75, "scale": 0.95},
     "teapot": {"elev": 34.0, "azim": -70.0, "ground": -1.0, "scale": 1.1},
 }
-COLORS = {"key": (BRASS, "#efe6d2"), "teapot": (PORCELAIN, "#dfe4ea")}
+STRETCH = {"key": 1.9, "teapot": 1.45}
+"""Of the paths in pictures, so that frames stand clear of one another; turns are as they are."""
+PALE = 0.35
+"""Of a scheme's own colour in frames between keyframes, the rest is white."""
 
 
 def render(case: PaperCase, t: FloatArray, quaternions: FloatArray) -> int:
@@ -78,18 +82,18 @@ def motion_table(case: PaperCase, schemes: tuple[str, ...]) -> pd.DataFrame:
 
 def four_panels(case: PaperCase, table: pd.DataFrame) -> Figure:
     """(a) keyframes, (b) and (c) frames of the two schemes, (d) both log-curves."""
-    fig = Figure(figsize=(style.PAGE, 3.9 if case.name == "key" else 5.4))
+    fig = Figure(figsize=(style.PAGE, 6.4 if case.name == "key" else 5.6))
     key_frames = table[table.panel == "keyframes"]
-    panels = [("keyframes", key_frames)]
+    panels = [("keyframes", key_frames, "white")]
     for name in ("quartic", "nielson"):
         picked = table[(table.panel == "frames") & (table.scheme == name)]
-        panels.append((f"frames by {TITLES[name]}", picked))
+        panels.append((f"frames by {TITLES[name]}", picked, style.scheme_style(name)["color"]))
     boxes = _boxes(case.name)
-    for letter, (label, rows), box in zip("abc", panels, boxes, strict=False):
-        _scene(fig, case, rows, key_frames, box)
+    for letter, (label, rows, color), box in zip("abc", panels, boxes, strict=False):
+        _scene(fig, case, rows, key_frames, box, color)
         _label(fig, box, f"({letter}) {label}")
     _logs(fig, table, key_frames, boxes[3])
-    _label(fig, boxes[3], r"(d) $\ln\,q(t)$, half rotation vectors in rad")
+    _label(fig, boxes[3], r"(d) $\ln\,q(t)$, half rotation vectors in rad; circles are keyframes")
     return fig
 
 
@@ -100,9 +104,9 @@ def caption_of(case: PaperCase, table: pd.DataFrame) -> str:
     others = f", and {', '.join(further)}" if further else ""
     return (
         f"{case.title}. (a) Keyframes; (b) {frames} frames by the quartic; (c) {frames} frames by the "
-        "cubic B-spline of Nielson, frames at keyframes in full colour; (d) the log-curves ln q(t) in "
-        f"R^3, half rotation vectors in rad, quartic red, B-spline blue{others}, keyframes marked, with "
-        f"their projections on the floor. {RECONSTRUCTED}"
+        "cubic B-spline of Nielson. Frames at keyframes are of brass, those between reddish and bluish; the path is "
+        "drawn longer than it is. (d) The log-curves ln q(t) in R^3, half rotation vectors in rad, quartic red, "
+        f"B-spline blue{others}, keyframes marked, with their projections on the floor. {RECONSTRUCTED}"
     )
 
 
@@ -114,23 +118,26 @@ Box = tuple[float, float, float, float]
 def _boxes(name: str) -> list[Box]:
     """Left, bottom, width, height of the panels in shares of the figure."""
     if name == "key":
-        return [*((0.0, 0.66 - 0.325 * k, 0.6, 0.29) for k in range(3)), (0.6, 0.08, 0.385, 0.87)]
+        return [*((0.0, 0.82 - 0.175 * k, 1.0, 0.145) for k in range(3)), (0.2, 0.02, 0.6, 0.4)]
     return [(x, y, 0.48, 0.45) for y in (0.5, 0.0) for x in (0.01, 0.51)]
 
 
-def _scene(fig: Figure, case: PaperCase, rows: pd.DataFrame, keys: pd.DataFrame, box: Box) -> None:
+def _scene(
+    fig: Figure, case: PaperCase, rows: pd.DataFrame, keys: pd.DataFrame, box: Box, color: str
+) -> None:
     ax: Any = fig.add_axes(box, projection="3d")
-    strong, pale = COLORS[case.name]
+    stretch = STRETCH[case.name]
+    pale = tuple(1.0 - PALE * (1.0 - np.array(to_rgb(color))))
     at_key = np.isclose(rows["t"].to_numpy()[:, None], keys["t"].to_numpy()).any(axis=1)
     lo, hi = case.times[0], case.times[-1]
     margin = 0.0 if case.closed else 0.5
-    path = case.positions(np.linspace(lo - margin, hi + margin, 181))
+    path = stretch * case.positions(np.linspace(lo - margin, hi + margin, 181))
     draw_frames(
         ax,
         body(case.name),
-        rows[POSITION].to_numpy(),
+        stretch * rows[POSITION].to_numpy(),
         rows[ORIENTATION].to_numpy(),
-        color=[strong if k else pale for k in at_key],
+        color=[BRASS if k else pale for k in at_key],
         path=path,
         **VIEWS[case.name],
     )

@@ -21,7 +21,6 @@ from quatspline.figures.meshes import Mesh
 FloatArray = NDArray[np.float64]
 
 BRASS = "#d8a441"
-PORCELAIN = "#7fa9d6"
 
 # The shading: light from above, over the camera's left shoulder (right, up, towards camera).
 _LIGHT = np.array([-0.45, 0.70, 0.55])

@@ -1,8 +1,7 @@
-"""One look for every figure: sizes, fonts, and one colour and marker a scheme everywhere."""
+"""One look for every figure: sizes, fonts, what panels share. How schemes look stands in `looks`."""
 
 from __future__ import annotations
 
-import zlib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
@@ -10,32 +9,30 @@ from typing import Any
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
+from quatspline.figures.looks import BLUE, RED, scheme_style
+
+__all__ = [
+    "BLUE",
+    "COLUMN",
+    "MARKERS",
+    "PAGE",
+    "PALETTE",
+    "RC",
+    "RED",
+    "axes",
+    "house",
+    "legend_of",
+    "letters",
+    "scheme_style",
+]
+
 COLUMN = 3.4
 """Width in inches of a figure for one column of a journal; PAGE is for both columns."""
 PAGE = 7.0
 
-RED, BLUE = "#c62828", "#1f5fbf"
-"""The paper's colours of the quartic and of the B-spline."""
-
 # Okabe & Ito's colour-blind safe palette, darkened where it would vanish on white.
 PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#b8860b", "#5d3a9b", "#444444")
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*", "<", ">")
-DASHES = ("-", "--", "-.", ":")
-
-OWN: dict[str, dict[str, Any]] = {
-    "quartic": {"color": RED, "marker": "o"},
-    "nielson": {"color": BLUE, "marker": "s"},
-    "kim": {"color": "#009e73", "marker": "^"},
-    "local-quintic": {"color": "#000000", "marker": "D"},
-    "monotone-quintic": {"color": "#5d3a9b", "marker": "P"},
-    "quintic": {"color": "#d55e00", "marker": "v"},
-    "slerp": {"color": "#8a8a8a", "marker": "x"},
-    "min-torque": {"color": "#b8860b", "marker": "*"},
-}
-"""Schemes that every figure tells apart at a glance; all others get theirs from their name."""
-
-SEED = 802
-"""Of the names' checksums: the least with which no two schemes of the catalogue share colour and marker."""
 
 RC: Any = {
     "figure.dpi": 150,
@@ -60,18 +57,6 @@ RC: Any = {
     "ytick.labelsize": 7.5,
     "svg.fonttype": "path",
 }
-
-
-def scheme_style(name: str) -> dict[str, Any]:
-    """Colour, marker and line style of a scheme: the same in every figure and every run."""
-    if name in OWN:
-        return {"linestyle": "-", **OWN[name]}
-    lot = zlib.crc32(name.encode(), SEED)
-    return {
-        "color": PALETTE[lot % len(PALETTE)],
-        "marker": MARKERS[lot // 8 % len(MARKERS)],
-        "linestyle": DASHES[1 + lot // 128 % 3],
-    }
 
 
 @contextmanager

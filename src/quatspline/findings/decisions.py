@@ -1,22 +1,20 @@
 """Choosing: which schemes are on a Pareto front, and what follows for somebody who has to take one.
 
-Works on a table with one row a scheme, from whichever measurements it was made; a column that is not there
+Works on a table with one row per scheme, from whichever measurements it was made; a column that is not there
 or is empty leaves out what would rest on it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from functools import partial
 from math import inf
-from operator import eq, ge, ne
-from typing import Any
 
 import pandas as pd
 
+from quatspline.findings.choices import CLOSES, LOCAL, MEETS, SMOOTH, Condition
 from quatspline.findings.questions import Filter, Question, Table, answered
 from quatspline.findings.quotes import Part, fields
-from quatspline.instruments.trials import Row
 from quatspline.runs.experiment import QUICK
 
 TABLE = "choosing"
@@ -36,7 +34,7 @@ def pareto(table: pd.DataFrame, criteria: Mapping[str, int]) -> pd.Series:
 
     Parameters
     ----------
-    table : one row a scheme
+    table : one row per scheme
     criteria : columns, with 1 where more is better and -1 where less is
 
     Returns
@@ -75,21 +73,11 @@ def lines(frame: pd.DataFrame) -> Iterator[str]:
         yield f"- {''.join(map(str, parts))} Cells: `{cited[0].rsplit('.', 1)[0]}`, {columns}."
 
 
-def _where(column: str, holds: Callable[[Any, Any], Any], value: Any) -> Filter:
-    """Rows whose column is known and holds beside a value."""
-
-    def filtered(rows: pd.DataFrame, _: Row) -> pd.Series:
-        cells = rows.reindex(columns=[column])[column]
-        return cells.notna() & holds(cells, value)
-
-    return filtered
-
-
 def _least(wish: str, by: str, filters: tuple[Filter, ...], *reasons: str) -> Question:
     """Who has the least of a column: a wish, what qualifies, and reasons, each said where its cells are known."""
     return Question(
         partial(_words, wish, by, reasons),
-        (_where(by, ge, -inf), *filters),  # what is known at all
+        (Condition(by, ">=", -inf), *filters),  # what is known at all
         lambda row: (row[by], row["scheme"]),
     )
 
@@ -112,14 +100,14 @@ def _decided(ranked: pd.DataFrame, by: str) -> bool:
 
 TORQUE = "torque energy {torque:.4g} times the least"
 QUICKEST = "{nanoseconds_per_sample:.3g} ns"
-MET = (_where("passes_keys", eq, "yes"),)
-C2 = (*MET, _where("smooth_k", ge, 2), _where("smooth_k_worst", ge, 2))
+MET = (MEETS,)
+C2 = (*MET, SMOOTH[2], Condition("smooth_k_worst", ">=", 2))
 
 QUESTIONS = (
     _least(
         "A curve that is C2 wherever measured, of which a keyframe shapes only a part, with the least torque",
         "torque",
-        (*C2, _where("support", ne, "all")),
+        (*C2, LOCAL),
         *(TORQUE, "{support} keyframes shape a segment", "order {order:.2f}"),
     ),
     _least(
@@ -127,16 +115,16 @@ QUESTIONS = (
         "torque",
         MET,
         *(TORQUE, "C{smooth_k_worst:.0f} at worst"),
-        "set-up {microseconds_per_keyframe:.3g} us a keyframe",
+        "set-up {microseconds_per_keyframe:.3g} us per keyframe",
     ),
     _least(
         "Closed and C2 wherever measured, with the least torque",
         "torque",
-        (*C2, _where("closes", eq, "yes")),
+        (*C2, CLOSES),
         *(TORQUE, "support {support}"),
     ),
     _least(
-        "C2 wherever measured, with the fewest operations a sample (exponentials and logarithms)",
+        "C2 wherever measured, with the fewest operations per sample (exponentials and logarithms)",
         "operations_sample",
         C2,
         *("{operations_sample:.0f} of them", TORQUE),

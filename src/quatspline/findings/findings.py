@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
-from quatspline.findings import decisions, recorded
+from quatspline.findings import decisions, recorded, reproduction
+from quatspline.findings.lists import joined, listed, numbered
 from quatspline.findings.quotes import Cell, Ledger, Part, Quote, Reader, Span, said
 from quatspline.instruments.summary import ALL
 
@@ -70,85 +71,6 @@ def reader(folder: Path) -> Reader:
     return read
 
 
-ROWS = (("key", 101), ("key", 201), ("teapot", 150), ("teapot", 300))
-
-
-def _iterations(cell: Ledger) -> tuple[Part, ...]:
-    key: dict[str, Any] = {"case": "key", "frames": 101, "scheme": "nielson"}
-    pot: dict[str, Any] = {"case": "teapot", "frames": 150, "scheme": "nielson"}
-    key["protocol"] = pot["protocol"] = "per-frame"
-    return said(
-        "Nielson's iteration takes {key:d} steps for the key and {pot:d} for the teapot; the paper prints "
-        "{paper_key:.0f} and {paper_pot:.0f}. The keyframes are reconstructed so that it does, for the paper prints "
-        "none.",
-        key=cell("table1", "iterations", **key),
-        pot=cell("table1", "iterations", **pot),
-        paper_key=cell("table1", "paper_iterations", **key),
-        paper_pot=cell("table1", "paper_iterations", **pot),
-    )
-
-
-def _ratios(cell: Ledger, scheme: str, protocol: str, column: str = "ratio_to_quartic") -> Span:
-    where = {"scheme": scheme, "protocol": protocol}
-    found = (cell("table1", column, case=case, frames=frames, **where) for case, frames in ROWS)
-    cells = tuple(found)
-    return Quote(cells, "least"), Quote(cells, "most")
-
-
-def _protocol(cell: Ledger) -> tuple[Part, ...]:
-    where = {"scheme": "nielson", "protocol": "per-frame"}
-    counts = [cell("table1", "frames", case=case, frames=frames, **where) for case, frames in ROWS]
-    return said(
-        "The paper finds its quartic {paper:.3g} times faster than the B-spline. Solving anew for every frame, as it "
-        "does, we measure {slow:.3g} (key at {v0} and {v1} frames, teapot at {v2} and {v3}); solving once and then "
-        "evaluating, {fast:.3g}. The difference is protocol, the rest is the scheme.",
-        paper=_ratios(cell, "nielson", "per-frame", "paper_ratio"),
-        slow=_ratios(cell, "nielson", "per-frame"),
-        fast=_ratios(cell, "nielson", "solve-once"),
-        **_numbered(counts),
-    )
-
-
-def _newton(cell: Ledger) -> tuple[Part, ...]:
-    where = {"case": "teapot", "frames": 150, "scheme": "kim", "protocol": "per-frame"}
-    return said(
-        "The cumulative B-spline of Kim, Kim & Shin, solved by Newton's method ({steps:d} steps for the teapot), "
-        "costs {slow:.3g} times the quartic per frame and {fast:.3g} times solved once.",
-        steps=cell("table1", "iterations", **where),
-        slow=_ratios(cell, "kim", "per-frame"),
-        fast=_ratios(cell, "kim", "solve-once"),
-    )
-
-
-def _jump(cell: Ledger) -> tuple[Part, ...]:
-    def jump(scheme: str, case: str, column: str = "relative") -> Cell:
-        return cell("continuity", column, scheme=scheme, case=case, quantity="alpha")
-
-    even, uneven = "60 degrees, uniform", "60 degrees, uneven"
-    return said(
-        "The paper's baseline does not have what its title is about: Nielson's curve is C1, its acceleration jumps at "
-        "keyframes by {smooth:.1f} % of its size on random keyframes ({even}) and by {rough:.1f} % on uneven times "
-        "({uneven}), while the jumps of the quartic ({quartic:.0e}) and of the cumulative B-spline ({kim:.0e}) are "
-        "rounding.",
-        smooth=Quote((jump("nielson", even),), "percent"),
-        rough=Quote((jump("nielson", uneven),), "percent"),
-        even=jump("nielson", even, "case"),
-        uneven=jump("nielson", uneven, "case"),
-        quartic=jump("quartic", uneven),
-        kim=jump("kim", uneven),
-    )
-
-
-def _cubic_fall(cell: Ledger) -> tuple[Part, ...]:
-    where = {"scheme": "nielson", "quantity": "alpha"}
-    cases = [f"smooth motion, {n} keyframes" for n in (41, 81)]
-    jumps = tuple(cell("continuity", "jump", case=case, **where) for case in cases)
-    return said(
-        "On smooth motion that jump falls by a factor {fall:.1f} when the keyframe spacing is halved (third order).",
-        fall=Quote(jumps, "ratio"),
-    )
-
-
 def _orders(cell: Ledger) -> tuple[Part, ...]:
     names = ("slerp", "quartic", "quintic", "kim", "nielson", "local-quintic")
     coarse, fine = cell.values("accuracy", "keyframes", scheme="quartic", knots="uniform")[-2:]
@@ -156,11 +78,11 @@ def _orders(cell: Ledger) -> tuple[Part, ...]:
     slopes = [cell("accuracy", "slope", scheme=name, **where) for name in names]
     return said(
         "Interior orders on a smooth motion, read between {before} and {after} uniform keyframes: "
-        f"{_listed(names, '.2f')}. The paper's quartic converges no faster than slerp; with the second derivative of "
+        f"{listed(names, '.2f')}. The paper's quartic converges no faster than slerp; with the second derivative of "
         "the parabola through three keyframes (quintic) the same construction gains an order.",
         before=cell("accuracy", "keyframes", scheme="quartic", knots="uniform", keyframes=coarse),
         after=cell("accuracy", "keyframes", scheme="quartic", **where),
-        **_numbered(slopes),
+        **numbered(slopes),
     )
 
 
@@ -170,9 +92,9 @@ def _torque(cell: Ledger) -> tuple[Part, ...]:
     medians = [cell("fairness", "median", scheme=name, **where) for name in names]
     return said(
         "Torque energy over the least possible, median of {sets:d} committed keyframe sets: "
-        f"{_listed(names, '.4f')}. local-quintic is local and solves nothing.",
+        f"{listed(names, '.4f')}. local-quintic is local and solves nothing.",
         sets=cell("fairness", "sets", scheme="local-quintic", **where),
-        **_numbered(medians),
+        **numbered(medians),
     )
 
 
@@ -212,15 +134,15 @@ def _smoothing(cell: Ledger) -> tuple[Part, ...]:
     angles = [cell("denoise", "rms_degrees", scheme=name, **where) for name in NAMED]
     return said(
         "What smoothing buys: with white noise of {sigma:.0f} degree about each axis upon {keyframes:.0f} keyframes of "
-        f"a known motion the rms error is, in degrees, {_listed(NAMED, '.2f')}; of the angular velocity, in degrees a "
-        "second, {through:.3g} through the keyframes (local-quintic) and {near:.3g} near them. The noise is told from "
-        "the keyframes as {told:.2f} degrees.",
+        f"a known motion the rms error is, in degrees, {listed(NAMED, '.2f')}; of the angular velocity, in degrees "
+        "per second, {through:.3g} through the keyframes (local-quintic) and {near:.3g} near them. The noise is told "
+        "from the keyframes as {told:.2f} degrees.",
         sigma=cell("denoise", "noise_degrees", scheme="slerp", **where),
         keyframes=cell("denoise", "keyframes", scheme="slerp", **where),
         through=cell("denoise", "omega", scheme="local-quintic", **where),
         near=cell("denoise", "omega", scheme="smoothing-spline", **where),
         told=cell("denoise", "told_degrees", scheme="smoothing-spline", **where),
-        **_numbered(angles),
+        **numbered(angles),
     )
 
 
@@ -235,14 +157,14 @@ def _unsmoothed(cell: Ledger) -> tuple[Part, ...]:
     noisy = ", ".join(f"{name} {{n{i}:.2f}}" for i, name in enumerate(names))
     return said(
         "And where it does not: on clips as they are, one frame in {every:d} kept, the rms angle at the frames "
-        f"left out is, over slerp's, {_listed(names, '.2f')}, for what is rough in them is not white; with "
+        f"left out is, over slerp's, {listed(names, '.2f')}, for what is rough in them is not white; with "
         f"{{sigma:.0f}} degree of white noise added it is {noisy}.",
         every=cell("denoise", "every", clip=ALL, every=every, noise_degrees=0.0, scheme="slerp"),
         sigma=cell(
             "denoise", "noise_degrees", clip=ALL, every=every, noise_degrees=1.0, scheme="slerp"
         ),
         **{f"n{i}": value for i, value in enumerate(ratios(1.0))},
-        **_numbered(ratios(0.0)),
+        **numbered(ratios(0.0)),
     )
 
 
@@ -254,9 +176,9 @@ def _wander(cell: Ledger) -> tuple[Part, ...]:
     worst = [cell("excursion", "wander_worst", scheme=name, **where) for name in EXCURSIVE]
     return said(
         "Where two keyframes are the same and a body should hold still, beside moves (sets '{data}'), curves wander "
-        f"from the keyframe by up to, in degrees: {_listed(EXCURSIVE, '.0f')}.",
+        f"from the keyframe by up to, in degrees: {listed(EXCURSIVE, '.0f')}.",
         data=cell("excursion", "data", scheme=EXCURSIVE[0], **where),
-        **_numbered(worst),
+        **numbered(worst),
     )
 
 
@@ -270,9 +192,10 @@ def _overshoot(cell: Ledger) -> tuple[Part, ...]:
         cell("excursion", "over_worst", scheme=own, data=x) for x in ("generic", "one axis")
     )
     return said(
-        f"The worst overshoot of a step, as a share of it, is {{generic:.2g}} for {_and(others)} on generic keyframes "
-        f"and {{axis:.2g}} on keyframes about one axis; for {own} it is {{own_generic:.1g}} and {{own_axis:.1g}}. Its "
-        "torque energy over the least possible is {torque:.3f} in the median.",
+        f"The worst overshoot of a step, as a share of it, is {{generic:.2g}} for {joined(others)} on generic "
+        f"keyframes and {{axis:.2g}} on keyframes about one axis; for {own} it is "
+        f"{{own_generic:.1g}} and {{own_axis:.1g}}. "
+        "Its torque energy over the least possible is {torque:.3f} in the median.",
         generic=worst("generic"),
         axis=worst("one axis"),
         own_generic=generic,
@@ -282,11 +205,7 @@ def _overshoot(cell: Ledger) -> tuple[Part, ...]:
 
 
 FINDINGS: tuple[tuple[str, Callable[[Ledger], tuple[Part, ...]]], ...] = (
-    ("reproduction", _iterations),
-    ("protocol", _protocol),
-    ("protocol", _newton),
-    ("continuity", _jump),
-    ("continuity", _cubic_fall),
+    *reproduction.SENTENCES,
     ("accuracy", _orders),
     ("fairness", _torque),
     ("slerp-variants", _variants),
@@ -296,19 +215,6 @@ FINDINGS: tuple[tuple[str, Callable[[Ledger], tuple[Part, ...]]], ...] = (
     ("excursion", _overshoot),
     *recorded.SENTENCES,
 )
-
-
-def _listed(names: Sequence[str], spec: str) -> str:
-    """A template that names quantities v0, v1, ... after their schemes."""
-    return ", ".join(f"{name} {{v{i}:{spec}}}" for i, name in enumerate(names))
-
-
-def _and(names: Sequence[str]) -> str:
-    return f"{', '.join(names[:-1])} and {names[-1]}"
-
-
-def _numbered(cells: Sequence[Cell]) -> dict[str, Cell]:
-    return {f"v{i}": cell for i, cell in enumerate(cells)}
 
 
 def lines(found: Iterable[Finding]) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""Questions over a table with one row a scheme: which rows qualify, which of them is best, and how that is said.
+"""Questions over a table with one row per scheme: which rows qualify, which of them is best, and how that is said.
 
 `recommendation` asks them of a comparison on somebody's keyframes, `decisions` of a folder of results.
 """
@@ -21,7 +21,7 @@ ROUNDED = "rounded"
 
 @dataclass(frozen=True)
 class Table:
-    """A table with one row a scheme, and those of its rows that answer a question.
+    """A table with one row per scheme, and those of its rows that answer a question.
 
     Attributes
     ----------

@@ -42,6 +42,7 @@ EXPRESSIONS: dict[str, Callable[..., Any]] = {
     "value": lambda value: value,
     "percent": lambda value: 100.0 * value,
     "ratio": lambda above, below: above / below,
+    "halved": lambda order: 2.0**order,
     "rounded": three_digits,
     "rounded degrees": lambda value: three_digits(math.degrees(value)),
     "rounded ratio": lambda above, below: three_digits(above / below),

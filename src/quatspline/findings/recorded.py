@@ -29,7 +29,7 @@ def worth(cell: Ledger) -> tuple[Part, ...]:
     where: dict[str, Any] = {"filter": RAW, "every": EVERY}
     slerp = {"clip": ALL, "scheme": "slerp", **where}
     return said(
-        f"Rebuilt from every {{every:d}}th frame, {_whose(cell)} are off by these multiples of slerp's rms angle "
+        f"Rebuilt from every {{every:d}}th frame, {whose(cell)} are off by these multiples of slerp's rms angle "
         f"(geometric mean): {_listed('r', '.2f')}. On the analytic {{tumble}} with the same frames kept they "
         f"are off by {_listed('t', '.3f')}.",
         every=cell("reconstruct", "every", **slerp),
@@ -98,7 +98,7 @@ def keyframes(cell: Ledger) -> tuple[Part, ...]:
     )
 
 
-def _whose(cell: Ledger) -> str:
+def whose(cell: Ledger) -> str:
     """Whose joints they are, as the subject of a sentence that quotes how many."""
     made = cell.values("reconstruct", "clip", scheme="slerp") == sorted([ALL, OWN, *CONTROLS])
     return (

@@ -2,7 +2,7 @@
 
 In the chart x_j = ln(q_i^-1 q_j) centred at a keyframe, derivatives are body rates (in log units).
 A cubic spline through the points within m keyframes gives both; nothing global is solved.  Two
-facts make this cheap.  ln(q_i^-1 q_{i+k}) = -ln(q_{i+k}^-1 q_i), so that m logarithms a keyframe
+facts make this cheap.  ln(q_i^-1 q_{i+k}) = -ln(q_{i+k}^-1 q_i), so that m logarithms per keyframe
 serve both sides; and each side of a spline, eliminated from its far end, acts on the centre by one
 relation v = r - p a only, so that two sides give v and a by one division.
 """

@@ -42,7 +42,7 @@ def denoising(
 
     rms_degrees, worst_degrees: of the joints' rms angles to the truth at the frames left out the median and the
     largest; keyframes_degrees: the median of their rms angles at the keyframes themselves; told_degrees: what
-    `noise_level` says of the keyframes, median; omega: rms error in degrees a second, where the true velocities
+    `noise_level` says of the keyframes, median; omega: rms error in degrees per second, where the true velocities
     (n, 3) are given; by_joint: the joints' rms angles, None of those that failed.
     """
     t, inside = true.times, measured(len(true.times), every)

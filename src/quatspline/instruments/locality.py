@@ -26,7 +26,7 @@ POINTS = 3
 
 
 def responses(build: Build, times: FloatArray, keyframes: FloatArray) -> pd.DataFrame:
-    """Responses to turns of the middle keyframe about three axes, one row a segment.
+    """Responses to turns of the middle keyframe about three axes, one row per segment.
 
     Columns: offset, counted from the keyframe (-1 is the segment before it, 1 the one after), and
     response, the largest angle between the curves on the segment over that of the turn (1 is neutral).

@@ -46,7 +46,7 @@ def compared(
 
 
 def _logs(table: pd.DataFrame, keys: list[str], reference: str) -> pd.DataFrame:
-    """A row a joint that is compared: the keys, the clip's name and the logarithm of its ratio."""
+    """A row per joint that is compared: the keys, the clip's name and the logarithm of its ratio."""
     case = [key for key in keys if key != "scheme"]
     joints = table.loc[table[LISTS].notna(), [*keys, LISTS]]
     joints = joints.assign(joint=joints[LISTS].map(lambda values: list(range(len(values)))))

@@ -38,6 +38,8 @@ WIRES: FloatArray = np.array(
 WIRED = [(0, 1), (0, 2), (0, 3), (0, 4), (1, 2), (2, 3), (3, 4), (4, 1), (1, 5), (5, 2)]
 WIRE_SCALE = 0.12
 """The body's length as a share of the extent of its path."""
+APART = 2.5
+"""Lengths of a body between bodies that stand side by side."""
 
 
 PARTS = (
@@ -214,15 +216,13 @@ def body_size(motion: Motion) -> float:
 
 
 def wires(motion: Motion, size: float = 1.0) -> Wires:
-    """A motion as points that lines join: a skeleton's joints and end sites, or the wires of one body.
+    """A motion as points that lines join: a skeleton's joints and end sites, or the wires of a body per track.
 
     The point that a joint moves is its end site, or else the first joint on it that is not at its place.
     """
     turns, places = motion.world()
     if motion.skeleton is None:
-        arms = quaternion.rotate(turns[:, :1], size * WIRES)
-        tip = 0 if motion.positions is not None else len(WIRES) - 1  # what stays tells nothing
-        return Wires(places[:, :1] + arms, WIRED, [tip])
+        return _bodies(turns, places, size, stays=motion.positions is None)
     parents, ends = motion.skeleton.parents.tolist(), motion.skeleton.ends
     lines = [(parent, joint) for joint, parent in enumerate(parents) if parent != ROOT]
     tips = list(range(len(parents)))
@@ -235,3 +235,16 @@ def wires(motion: Motion, size: float = 1.0) -> Wires:
         lines.append((joint, site))
         points.append((places[:, joint] + quaternion.rotate(turns[:, joint], end))[:, np.newaxis])
     return Wires(np.concatenate(points, axis=1), lines, tips)
+
+
+def _bodies(turns: FloatArray, places: FloatArray, size: float, stays: bool) -> Wires:
+    """The wires of a body per track; those that stay at one place stand side by side."""
+    tracks, count = turns.shape[1], len(WIRES)
+    if stays:
+        places = places + np.arange(tracks)[:, np.newaxis] * [APART * size, 0.0, 0.0]
+    arms = quaternion.rotate(turns[:, :, np.newaxis], size * WIRES)
+    points = (places[:, :, np.newaxis] + arms).reshape(len(turns), -1, 3)
+    firsts = range(0, tracks * count, count)
+    tip = count - 1 if stays else 0  # what stays tells nothing
+    lines = [(first + a, first + b) for first in firsts for a, b in WIRED]
+    return Wires(points, lines, [first + tip for first in firsts])

@@ -15,17 +15,20 @@ from quatspline import __version__
 from quatspline.findings import targets
 from quatspline.findings.findings import Finding, findings
 from quatspline.findings.quotes import Quote
-from quatspline.page import plots, sections
+from quatspline.page import plots, rankings, sections
+from quatspline.page.chooser import chooser
 from quatspline.page.folder import Folder
 from quatspline.page.glossary import column
 from quatspline.page.motion import Scene, player_data
+from quatspline.page.reference import Beside, place, quick
 from quatspline.page.sections import Section
 from quatspline.page.table1 import side_by_side
 
 ASSETS = Path(__file__).parent / "assets"
 SCRIPTS = (
-    *("data", "theme", "figures", "tables", "plots"),
+    *("data", "address", "theme", "contents", "figures", "chooser", "tables", "plots"),
     *("scenes", "geometry", "stage", "path", "strip", "clock", "player"),
+    *("jets", "curves", "drawing"),
     *("recording", "wires", "replay", "start"),
 )
 """Scripts in the order that they are run."""
@@ -36,15 +39,19 @@ TOPICS = {
     "warning": "Before any advice",
     "recommendation": "Recommendation",
 }
-MAKERS: dict[str, Callable[[Folder], Any]] = {
-    "table1": lambda folder: side_by_side(folder.frame("table1")),
-    "speed": lambda folder: {
-        "where": targets.measured_on(folder.manifest),
-        "rows": [targets.cells(verdict) for verdict in targets.verdicts(folder.frame)],
-        "note": targets.ACCURACY,
-    },
+MAKERS: dict[str, tuple[tuple[str, ...], Callable[[Folder], Any]]] = {
+    "chooser": (("choosing", "excursion"), chooser),
+    "table1": (("table1",), lambda folder: side_by_side(folder.frame("table1"))),
+    "speed": (
+        ("speed",),
+        lambda folder: {
+            "where": targets.measured_on(folder.manifest),
+            "rows": [targets.cells(verdict) for verdict in targets.verdicts(folder.frame)],
+            "note": targets.ACCURACY,
+        },
+    ),
 }
-"""What templates of sections show that is made from tables, by the section's block."""
+"""What templates of sections show that is made from tables, by the section's block: the tables, and what makes it."""
 
 ADDED = "What the measurements add"
 """Headings of the findings; every further topic is under the last."""
@@ -71,6 +78,9 @@ def document(
         "sections": [section for section in shown if section],
         "manifest": folder.manifest,
         "failures": folder.failures,
+        "quick": quick(folder),
+        "reference": place() is not None,
+        "beside": Beside(folder),
         "data": list(_data(folder, motions)),
         "style": Markup((ASSETS / "page.css").read_text(encoding="utf-8")),
         "plotly": Markup(_plotly()),
@@ -120,7 +130,7 @@ def _filled(
     played = section.needs in have
     if not tables and not played:
         return None
-    own = [finding for finding in told if finding.topic == section.topic]
+    own = [finding for finding in told if finding.topic in section.topics]
     block = section.block if played or not section.needs else ""
     made = _made(section, folder)
     return {"section": section, "block": block, "tables": tables, "findings": own, "made": made}
@@ -128,7 +138,7 @@ def _filled(
 
 def _apart(parts: Sequence[Section]) -> set[str]:
     """Topics of findings that stand in sections of their own."""
-    return {section.topic for section in parts if section.topic}
+    return {topic for section in parts for topic in section.topics}
 
 
 def _made(section: Section, folder: Folder) -> Any:
@@ -136,10 +146,12 @@ def _made(section: Section, folder: Folder) -> Any:
 
     Raises ValueError that names the tables if they lack a column, or hold what they cannot.
     """
+    names, make = MAKERS.get(section.block, ((), lambda folder: None))
     try:
-        return MAKERS.get(section.block, lambda folder: None)(folder)
+        return make(folder) if not names or names[0] in folder.tables else None
     except (LookupError, TypeError, ValueError) as error:
-        files = ", ".join(str(folder.path / f"{name}.csv") for name in section.tables)
+        there = [name for name in names if name in folder.tables]
+        files = ", ".join(str(folder.path / f"{name}.csv") for name in there)
         what = f"no column {error}" if isinstance(error, KeyError) else error
         raise ValueError(f"{files}: {what}") from error
 
@@ -214,7 +226,7 @@ def _data(folder: Folder, motions: list[dict[str, Any]]) -> Iterator[tuple[str, 
     yield "replays", folder.replays
     yield "looks", {name: plots.scheme_look(name) for name in sorted(_schemes(folder, motions))}
     yield "columns", {name: _columns(name, table.columns) for name, table in folder.tables.items()}
-    yield "rankings", {name: vars(ranking) for name, ranking in sections.RANKINGS.items()}
+    yield "rankings", {name: vars(ranking) for name, ranking in rankings.RANKINGS.items()}
 
 
 def _schemes(folder: Folder, motions: list[dict[str, Any]]) -> set[str]:

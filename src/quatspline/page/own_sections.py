@@ -22,11 +22,12 @@ OWN: tuple[Section, ...] = (
                 ("torque_over_least", "jerk_over_least", "peak_over_least"),
                 "points",
                 log=(True, True),
+                ratios=("torque_over_least", "jerk_over_least"),
             ),
         ),
     ),
     replace(_BLOCKS["recorded"], tables=(), plots=()),
-    *(_BLOCKS[key] for key in ("player", "log-curves", "rates")),
+    *(_BLOCKS[key] for key in ("motions", "log-curves", "rates")),
 )
 """The sections of a page for somebody's own keyframes."""
 

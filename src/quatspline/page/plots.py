@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 from matplotlib.colors import to_hex, to_rgb
 
-from quatspline.figures import style
+from quatspline.figures.looks import LEADING, Dash, scheme_style, third_party
 from quatspline.page.folder import Table
 from quatspline.page.glossary import label
 
@@ -29,6 +29,7 @@ class Plot:
     facets : columns of which one value is shown at a time
     start : the value of a facet shown at first, where it is not the first in the table
     log : whether the axes (of a map: its colour) start logarithmic
+    ratios : columns that are ratios to a least value, of which a logarithmic axis shows the excess over 1
     """
 
     table: str
@@ -41,6 +42,7 @@ class Plot:
     facets: tuple[str, ...] = ()
     start: dict[str, str] = field(default_factory=dict)
     log: tuple[bool, bool] = (False, False)
+    ratios: tuple[str, ...] = ()
 
 
 def specification(plot: Plot, table: Table) -> dict[str, Any] | None:
@@ -60,6 +62,8 @@ def specification(plot: Plot, table: Table) -> dict[str, Any] | None:
         "kind": plot.kind,
         "log": list(plot.log),
         "start": plot.start,
+        "ratios": list(plot.ratios),
+        "lit": list(LEADING),
     }
     return {"id": f"plot-{plot.table}-{plot.kind}", "table": plot.table, **axes, **rest}
 
@@ -74,10 +78,19 @@ SYMBOLS = {
     "D": "diamond",
     "P": "cross",
     "X": "x",
-    "x": "x-thin-open",
     "*": "star",
+    "p": "pentagon",
+    "h": "hexagon",
 }
 DASHES = {"-": "solid", "--": "dash", "-.": "dashdot", ":": "dot"}
+
+
+def _dash(dash: Dash) -> str:
+    """A dash as Plotly takes it: by name, or lengths in pixels."""
+    return (
+        DASHES[dash] if isinstance(dash, str) else ",".join(f"{length:g}px" for length in dash[1])
+    )
+
 
 NIGHT, VISIBLE = "#14171b", 4.0
 """The dark look's ground, and the least contrast ratio of a line on it (WCAG asks for 3)."""
@@ -85,13 +98,13 @@ NIGHT, VISIBLE = "#14171b", 4.0
 
 def scheme_look(name: str) -> dict[str, str]:
     """Colour (on light and dark ground), marker and dash of a scheme: those of the figures."""
-    look = style.scheme_style(name)
+    look = scheme_style(name)
     color = to_hex(look["color"])
     return {
         "light": color,
         "dark": _lightened(color),
-        "symbol": SYMBOLS[look["marker"]],
-        "dash": DASHES[look["linestyle"]],
+        "symbol": SYMBOLS[look["marker"]] + ("-open" if third_party(name) else ""),
+        "dash": _dash(look["linestyle"]),
     }
 
 

@@ -1,9 +1,10 @@
-"""The page's sections in order: what each is about, its tables and plots, and by what it ranks."""
+"""The page's sections in order: what each is about, its tables and plots."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
+from quatspline.findings.decisions import TABLE
 from quatspline.findings.recorded import TOPIC
 from quatspline.instruments.summary import ALL
 from quatspline.page.plots import Plot
@@ -19,9 +20,10 @@ class Section:
     tables : names of tables, each shown with its note and its figure
     plots : interactive plots of them
     block : a template of its own, `assets/blocks/<block>.html`
-    needs : what the block shows, if it is no table: "scenes" or "replays"
-    topic : of findings that stand here and not at the top
+    needs : what the block shows, if it is no table: "scenes", "replays" or "nothing"
+    topics : of findings that stand here and not at the top
     folded : whether tables start folded (they hold what a figure draws)
+    leads : whether the section stands before the findings
     """
 
     key: str
@@ -31,78 +33,17 @@ class Section:
     plots: tuple[Plot, ...] = ()
     block: str = ""
     needs: str = ""
-    topic: str = ""
+    topics: tuple[str, ...] = ()
     folded: bool = False
+    leads: bool = False
 
-
-@dataclass(frozen=True)
-class Ranking:
-    """How rows are ordered at first."""
-
-    column: str
-    descending: bool
-    criterion: str
-    among: dict[str, str] = field(default_factory=dict)
-    """Values that the table is filtered for at first."""
-
-
-RANKINGS: dict[str, Ranking] = {
-    "fairness": Ranking(
-        "median",
-        False,
-        "the median over the keyframe sets of the torque energy over the least possible; less is better",
-        {"data": "committed"},
-    ),
-    "compare": Ranking(
-        "torque_over_least",
-        False,
-        "torque energy over the least of all schemes compared; less is better",
-    ),
-    "kept": Ranking(
-        "rms_median",
-        False,
-        "the median over the joints of their rms angles at the frames left out; less is better",
-    ),
-    "choosing": Ranking(
-        "torque",
-        False,
-        "the median over the committed keyframe sets of the torque energy over the least possible; less is better",
-    ),
-    "reconstruct": Ranking(
-        "over_slerp",
-        False,
-        "the rms angle at the frames left out over slerp's, geometric mean over the joints; less is better",
-        {"clip": ALL},
-    ),
-    "reduce": Ranking(
-        "over_slerp",
-        False,
-        "the keyframes that are needed over slerp's, geometric mean over the joints; less is better",
-        {"clip": ALL},
-    ),
-    "excursion": Ranking(
-        "wander_worst",
-        False,
-        "the largest angle from the keyframe during a hold ten times as long as the moves beside it; less is better",
-        {"data": "hold 10 : 1"},
-    ),
-    "claims": Ranking("verdict", False, "the verdict: what departs comes first"),
-}
 
 SECTIONS: tuple[Section, ...] = (
     Section(
-        "player",
-        "The motions",
-        "The same keyframes under two schemes. The arrow on the body is its angular velocity; the curve beside it is "
-        "the path of the unit quaternion, with the tangents that arrive at each keyframe and leave it. Where they "
-        "form a corner, the velocity jumps.",
-        block="player",
-        needs="scenes",
-    ),
-    Section(
         "choosing",
-        "Which scheme",
-        "One row a scheme, one column a question. Sort by any column: the line above the table states the criterion.",
+        "Which scheme?",
+        "Answer what you know; the schemes that qualify remain, the least torque first. The address holds the "
+        "answers, so that a view can be shared.",
         ("choosing",),
         (
             Plot(
@@ -111,23 +52,41 @@ SECTIONS: tuple[Section, ...] = (
                 ("torque", "torque_worst", "order"),
                 "points",
                 log=(True, True),
+                ratios=("torque", "torque_worst"),
             ),
         ),
-    ),
-    Section(
-        "table1",
-        "Table 1, beside the paper's own",
-        "The paper fits its B-spline anew for every frame; fitted once, the same curve costs less. Both protocols "
-        "stand beside the paper's numbers, which come from another machine: compare ratios, not seconds.",
-        ("table1",),
-        block="table1",
-    ),
-    Section(
-        "figures",
-        "Figures 1 to 4",
-        "Drawn from the tables under them.",
-        ("figure1", "figure2", "figure3", "figure4"),
+        block="chooser",
+        topics=(TABLE,),
         folded=True,
+        leads=True,
+    ),
+    Section(
+        "paper",
+        "The paper, reproduced",
+        "Table 1 as the paper prints it, with what is measured here beside it. The paper fits its B-spline anew for "
+        "every frame; fitted once, the same curve costs less, so both protocols stand there. Its seconds come from "
+        "another machine: compare ratios.",
+        ("table1", "figure3", "figure4", "figure1", "figure2"),
+        block="table1",
+        topics=("reproduction", "protocol"),
+        folded=True,
+    ),
+    Section(
+        "motions",
+        "The motions",
+        "The same keyframes under two schemes. The arrow on the body is its angular velocity; the curve beside it is "
+        "the path of the unit quaternion, with the tangents that arrive at each keyframe and leave it. Where they "
+        "form a corner, the velocity jumps.",
+        block="player",
+        needs="scenes",
+    ),
+    Section(
+        "draw",
+        "Draw your own",
+        "Go to a keyframe and drag the body to turn it; drag its number on the timeline to move it in time. Five "
+        "schemes are computed in this page, as the package computes them.",
+        block="draw",
+        needs="scenes",
     ),
     Section(
         "log-curves",
@@ -270,7 +229,7 @@ SECTIONS: tuple[Section, ...] = (
         ),
         block="recorded",
         needs="replays",
-        topic=TOPIC,
+        topics=(TOPIC,),
         folded=True,
     ),
     Section("claims", "Claims and verdicts", "Each claim beside what was measured.", ("claims",)),

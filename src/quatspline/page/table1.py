@@ -1,4 +1,4 @@
-"""Table 1 side by side: the paper's numbers, and ours under both protocols."""
+"""Table 1 as the paper prints it, twelve rows, with ours beside under both protocols."""
 
 from __future__ import annotations
 
@@ -6,30 +6,52 @@ from typing import Any
 
 import pandas as pd
 
+from quatspline.trajectories.paper import CASES
+
 ROW = ["case", "frames", "scheme"]
 PROTOCOLS = ("per-frame", "solve-once")
 DIGITS = ".3g"
+PRINTED = {"nielson": "B-spline (nielson)", "quartic": "quartic"}
+"""Schemes of the paper's table in its order, and how they are called there."""
+NOTHING = "—"
+"""Where nothing iterates."""
 UNITS = {"s": 1.0, "ms": 1e-3, "µs": 1e-6, "ns": 1e-9}
 
 
 def side_by_side(table: pd.DataFrame) -> list[dict[str, Any]]:
-    """One row a case, frame count and scheme: the paper's cells, then those of each protocol.
+    """One row a case, frame count and scheme of the paper's: its cells, then those of each protocol.
 
     Cells are text, in the order of the template's headings; one that was not measured is empty.
     """
-    groups = table.groupby(ROW, sort=False)
-    return [{"key": [str(part) for part in key], "cells": _cells(group)} for key, group in groups]
+    groups: dict[Any, pd.DataFrame] = dict(list(table.groupby(ROW, sort=False)))
+    keys = [
+        (case.name, row.frames, scheme)
+        for case in CASES.values()
+        for row in case.rows
+        for scheme in PRINTED
+    ]
+    return [_printed(key, groups[key]) for key in keys if key in groups]
+
+
+def _printed(key: tuple[str, int, str], group: pd.DataFrame) -> dict[str, Any]:
+    case, frames, scheme = key
+    return {"key": [case, str(frames), PRINTED[scheme]], "cells": _cells(group)}
 
 
 def _cells(group: pd.DataFrame) -> list[str]:
     """Iterations, seconds and ratios of one row: the paper's before ours."""
     paper = group.iloc[0]
     anew, once = (group[group["protocol"] == protocol] for protocol in PROTOCOLS)
-    steps = [_shown(paper["paper_iterations"], ".0f"), _first(group, "iterations", ".0f")]
+    steps = [_steps(paper["paper_iterations"]), _steps(paper["iterations"])]
     measured = [None if g.empty else g.iloc[0]["seconds_median"] for g in (anew, once)]
     seconds = [duration(value) for value in (paper["paper_seconds"], *measured)]
     ratios = [_shown(paper["paper_ratio"]), *(_first(g, "ratio_to_quartic") for g in (anew, once))]
     return steps + seconds + ratios
+
+
+def _steps(count: Any) -> str:
+    """A number of iterations; of a scheme that solves nothing, none."""
+    return NOTHING if count == 0 else _shown(count, ".0f")
 
 
 def _first(group: pd.DataFrame, column: str, spec: str = DIGITS) -> str:

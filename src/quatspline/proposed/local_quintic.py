@@ -10,7 +10,6 @@ from quatspline.families.rotation_vector import ROTATION_VECTOR
 from quatspline.fitting.joined_rates import join, steps_and_rates
 from quatspline.kernels.jit import REACH, fit_kernel
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.options import AtMost, Count
 from quatspline.segments import SegmentCurve
 
@@ -22,7 +21,7 @@ class LocalQuinticSpline(SegmentCurve):
     spline through the points x_j = ln(q_i^-1 q_j), |j - i| <= m, of the chart centred there, in
     which derivatives are body rates (`local_rates`).  Its ends are not-a-knot where the window is
     cut, natural where it meets the curve's end.  Windows whose chart would fold give way, smoothly,
-    to smaller ones.  One exponential a segment, Q = q_i exp(phi(u)), matches the rates of both ends
+    to smaller ones.  One exponential per segment, Q = q_i exp(phi(u)), matches the rates of both ends
     (docs: local-quintic.md):
 
         phi(0) = 0,    phi'(0) = h v_i,                     phi''(0) = h^2 a_i                   (1)
@@ -44,7 +43,6 @@ class LocalQuinticSpline(SegmentCurve):
     support = 8
     constant_rate = "everywhere"
     family = ROTATION_VECTOR
-    operations = Operations(exps=Per(sample=1), logs=Per(keyframe=3))
 
     def _fit(self, keyframes: Keyframes, *, window: Annotated[Count, AtMost(100)] = 3) -> None:
         self.order = 4 if window > 1 else 2

@@ -12,7 +12,6 @@ from quatspline.fitting.monotone_rates import monotone
 from quatspline.kernels.jit import REACH, fit_kernel
 from quatspline.kernels.values import put_vec, vec_at
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.options import AtLeast, AtMost
 from quatspline.segments import SegmentCurve
 
@@ -54,7 +53,6 @@ class MonotoneQuinticSpline(SegmentCurve):
     support = 2 * WINDOW + 2
     constant_rate = "everywhere"
     family = ROTATION_VECTOR
-    operations = Operations(exps=Per(sample=1), logs=Per(keyframe=WINDOW))
 
     def _fit(
         self,

@@ -7,7 +7,6 @@ import numpy as np
 from quatspline.families.cumulative import MIDDLE
 from quatspline.fitting.four_keyframes import FIT
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.segments import SegmentCurve
 
 
@@ -40,7 +39,6 @@ class QuarticSpline(SegmentCurve):
     support = 4
     constant_rate = "interior"
     family = MIDDLE
-    operations = Operations(exps=Per(sample=3), logs=Per(segment=1))
 
     def _fit(self, keyframes: Keyframes) -> None:
         self._solve(FIT, np.array([3.0]))  # kappa: `four_keyframes` (3)

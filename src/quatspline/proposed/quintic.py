@@ -7,7 +7,6 @@ import numpy as np
 from quatspline.families.cumulative import MIDDLE
 from quatspline.fitting.four_keyframes import FIT
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.options import Factor
 from quatspline.segments import SegmentCurve
 
@@ -35,7 +34,6 @@ class QuinticSpline(SegmentCurve):
     support = 4
     constant_rate = "interior"
     family = MIDDLE
-    operations = Operations(exps=Per(sample=3), logs=Per(segment=1))
 
     def _fit(self, keyframes: Keyframes, *, curvature: Factor = 1.0) -> None:
         self.order = 3 if curvature == 1.0 else 2

@@ -14,7 +14,6 @@ from quatspline.fitting.smoothing import REST, Smoothing, Solution
 from quatspline.fitting.smoothing_search import Criterion, Search, gcv, reached, risk
 from quatspline.kernels.jit import REACH
 from quatspline.keyframes import Keyframes
-from quatspline.operations import Operations, Per
 from quatspline.options import AtLeast, Count, OnFailure, Positive, per_keyframe
 from quatspline.quaternion import FloatArray
 from quatspline.segments import SegmentCurve
@@ -71,7 +70,6 @@ class SmoothingSpline(SegmentCurve):
     measures_itself = True
     min_keyframes = 3
     family = ROTATION_VECTOR
-    operations = Operations(exps=Per(sample=1))
 
     def _fit(
         self,

@@ -1,12 +1,13 @@
-"""What the operations that schemes state add up to, for a curve's keyframes, iterations and samples."""
+"""What is executed for a curve's keyframes, iterations and samples, counted by running its kernels (`counted`)."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Mapping
 from typing import NamedTuple
 
+from quatspline.counted import of_updates
 from quatspline.curve import Curve
-from quatspline.operations import UNSTATED, Operations, Per
+from quatspline.segments import SegmentCurve
 
 OPERATIONS = ("slerps", "exps", "logs")
 """The kinds that tables count."""
@@ -34,35 +35,24 @@ def executed(curve: Curve, samples: int, solves: int = 1) -> Executed:
 
     Operations other than `OPERATIONS` are left out.
     """
-
-    def set_up(per: Per) -> float:
-        return solves * _of_a_solve(per, curve)
-
-    own, updates = curve.operations, _updates(curve)
-    sampled = _counted(own, lambda per: samples * per.sample)
-    updated = _counted(updates, lambda per: iterations(curve) * set_up(per))
-    return Executed(_sum(sampled, updated), _counted(own, set_up))
+    sampled = _kinds(per_sample(curve), samples)
+    if not (isinstance(curve, SegmentCurve) and hasattr(curve, "fit_kernel")):
+        each = {kind: per.keyframe for kind, per in curve.operations.kinds.items()}
+        return Executed(sampled, _kinds(each, solves * curve.keyframes.count))
+    rest, update = of_updates(curve)
+    updated = _kinds(update, solves * iterations(curve))
+    return Executed(_sum(sampled, updated), _kinds(rest, solves))
 
 
 def per_keyframe(curve: Curve) -> Counts:
     """Operations of a set-up per keyframe of many, those of all iterations included."""
-    updates = _counted(_updates(curve), lambda per: iterations(curve) * of_a_keyframe(per))
-    return _sum(_counted(curve.operations, of_a_keyframe), updates)
+    updates, kinds = iterations(curve), curve.operations.kinds
+    return _kinds({kind: per.keyframe + updates * per.iteration for kind, per in kinds.items()})
 
 
 def per_sample(curve: Curve) -> Counts:
     """Operations of a sample."""
-    return _counted(curve.operations, of_a_sample)
-
-
-def of_a_sample(per: Per) -> float:
-    """The count of a sample."""
-    return per.sample
-
-
-def of_a_keyframe(per: Per) -> float:
-    """Counts of the units of a set-up of which there is about one per keyframe."""
-    return per.keyframe + per.inner_keyframe + per.segment + per.knot
+    return _kinds({kind: per.sample for kind, per in curve.operations.kinds.items()})
 
 
 def iterations(curve: Curve) -> int:
@@ -70,19 +60,8 @@ def iterations(curve: Curve) -> int:
     return int(curve.solve_report.iterations) if curve.solve_report is not None else 0
 
 
-def _of_a_solve(per: Per, curve: Curve) -> float:
-    count, segments = curve.keyframes.count, curve.keyframes.spacings.size
-    inner = count if curve.closed else max(count - 2, 0)
-    each = per.keyframe * count + per.inner_keyframe * inner
-    return each + per.segment * segments + per.knot * (segments + 1) + per.solve
-
-
-def _updates(curve: Curve) -> Operations:
-    return curve.operations.iteration or UNSTATED
-
-
-def _counted(operations: Operations, count: Callable[[Per], float]) -> Counts:
-    return {kind: float(count(operations.kinds[kind])) for kind in OPERATIONS}
+def _kinds(counts: Mapping[str, float], times: float = 1.0) -> Counts:
+    return {kind: float(times * counts.get(kind, 0)) for kind in OPERATIONS}
 
 
 def _sum(a: Counts, b: Counts) -> Counts:

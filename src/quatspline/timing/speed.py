@@ -1,8 +1,8 @@
-"""Speed: what every scheme costs on fixed tasks, beside two floors that no scheme can pass.
+"""Speed: what every scheme costs on fixed tasks, beside what one core can do (`floors`).
 
 A task is a set of contenders that do the same work: all schemes that can, in-house and peers as
-published, and the floors: writing the result (``out.fill``) and one sine and cosine a sample (numpy).
-They are timed interleaved (`timing`), so that each reads as a multiple of the floors of the same run.
+published, and the floors: a fused multiply-add, writing the result, and one sine and cosine a sample
+(numpy).  They are timed interleaved (`timing`), so that each is held against the floors of the same run.
 """
 
 from __future__ import annotations
@@ -18,17 +18,26 @@ from functools import partial
 import numpy as np
 
 from quatspline.catalogue import scheme
+from quatspline.counted import of_a_sample, packed
 from quatspline.curve import Curve
 from quatspline.engines import engine
 from quatspline.instruments.trials import reason
 from quatspline.options import among
 from quatspline.quaternion import FloatArray
+from quatspline.segments import SegmentCurve
 from quatspline.timing.budget import Budget, OverBudget, calls, seconds
+from quatspline.timing.floors import (
+    MULTIPLY_ADD,
+    MULTIPLY_ADDS,
+    WRITING,
+    multiply_adding,
+    writing,
+)
 from quatspline.timing.interleaved import LEAST, Contender, Timing, interleaved, repeated
 from quatspline.trajectories.walks import loop, walk
 
-FILL, SINCOS = "out.fill", "sin, cos"
-FLOORS = (FILL, SINCOS)
+SINCOS = "sin, cos"
+FLOORS = (MULTIPLY_ADD, WRITING, SINCOS)
 DEGREES = 40.0
 OPTIONS = {"tolerance": 1e-9}
 """Of schemes that have them: iterative ones."""
@@ -52,7 +61,8 @@ class Task:
     keyframes, items : sizes
     width : numbers written per item: what the floor writes
     work : scheme -> (function of a number of items -> contender); raises where it does not apply
-    patience : seconds a call; slower contenders do fewer items, unless it is None
+    patience : seconds per call; slower contenders do fewer items, unless it is None
+    arithmetic : scheme -> packed arithmetic instructions of an item, None where they are not counted
     """
 
     name: str
@@ -62,6 +72,7 @@ class Task:
     width: int
     work: Callable[[str], Callable[[int], Contender]]
     patience: float | None = None
+    arithmetic: Callable[[str], float | None] = lambda _: None
 
 
 @dataclass(frozen=True)
@@ -94,7 +105,7 @@ def measured(
 def contender_of(task: Task, name: str) -> tuple[Contender, int]:
     """The contender of a scheme or a floor, and the items that it does; raises where there is none."""
     if name in FLOORS:
-        return _floor(task, name), task.items
+        return _floor(task, name), MULTIPLY_ADDS if name == MULTIPLY_ADD else task.items
     make, items = task.work(name), task.items
     if task.patience is not None:
         patience = Budget(limit=task.patience, meter=seconds)
@@ -103,9 +114,10 @@ def contender_of(task: Task, name: str) -> tuple[Contender, int]:
 
 
 def _floor(task: Task, name: str) -> Contender:
-    if name == FILL:
-        out = np.empty((task.items, task.width))
-        return repeated(lambda: out.fill(0.0))
+    if name == MULTIPLY_ADD:
+        return multiply_adding()
+    if name == WRITING:
+        return writing(task.items, task.width)
     angles = np.linspace(0.0, 1.5, task.items)
     sine, cosine = np.empty(task.items), np.empty(task.items)
 
@@ -177,7 +189,7 @@ def evaluation(
     threads: int = 1,
     width: int | None = None,
 ) -> Task:
-    """Samples into a given array."""
+    """Samples into a given array; of one thread with the arithmetic that compiled schemes take for them."""
 
     def work(who: str) -> Callable[[int], Contender]:
         curve = _curve(who, keyframes)
@@ -191,9 +203,15 @@ def evaluation(
 
         return make
 
-    return Task(
-        name, "sample", len(keyframes), t.size, width or (3 if order else 4), work, patience
-    )
+    def arithmetic(who: str) -> float | None:
+        if threads > 1 or not issubclass(scheme(who), SegmentCurve):
+            return None
+        curve = _curve(who, keyframes)
+        curve(np.mean(curve.domain), order)  # of a long curve, the segments there are fitted
+        return float(packed(of_a_sample(curve, order))) * int(np.prod(curve.keyframes.track_shape))
+
+    sizes = len(keyframes), t.size, width or (3 if order else 4)
+    return Task(name, "sample", *sizes, work, patience, arithmetic)
 
 
 def set_up(name: str, keyframes: FloatArray) -> Task:

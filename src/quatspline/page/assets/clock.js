@@ -52,13 +52,16 @@ quatspline.Clock = class {
 
   /* The schemes compared, each with its looks. */
   _sides() {
-    const { theme } = quatspline;
-    return [["a", []], ["b", quatspline.Clock.DASH]].map(([side, dash]) => ({ side, dash, color: theme.color(side), curve: this.motion.curve(this.controls[side].value) }));
+    return [["a", []], ["b", quatspline.Clock.DASH]].map(([side, dash]) => {
+      const name = this.controls[side].value, color = quatspline.plots.seriesColor(name);
+      if (this.place.style.getPropertyValue(`--${side}`) !== color) this.place.style.setProperty(`--${side}`, color);
+      return { side, dash, color, curve: this.motion.curve(name) };
+    });
   }
 
   _key(event) {
     const kind = event.target.tagName;
-    const own = kind === "SELECT" || (kind === "INPUT" && event.target.type === "checkbox");
+    const own = kind === "SELECT" || kind === "TEXTAREA" || (kind === "INPUT" && event.target.type === "checkbox");
     if (own || event.altKey || event.ctrlKey || event.metaKey) return;
     if (event.key === " " && kind === "BUTTON") return; /* the button's own */
     const step = this.motion.span / quatspline.Clock.STEPS;

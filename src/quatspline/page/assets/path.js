@@ -16,15 +16,21 @@ quatspline.PathView = class extends quatspline.View {
   draw(motion, chart, curves, t) {
     const { theme } = quatspline;
     this.chart = quatspline.PathView.CHARTS[chart];
-    this._reference(motion, chart, curves);
-    const lines = curves.map(({ curve }) => this._line(curve, chart));
-    this.fit(this._box(lines.flat(), this.axes), quatspline.PathView.MARGIN);
     this.clear();
+    const state = [motion.name, chart, ...curves.flatMap(({ curve, color }) => [curve.name, color])];
+    this.behind(state, () => this._still(motion, chart, curves, theme));
+    curves.forEach((item, i) => this._cursor(motion, item, this.lines[i], t));
+  }
+
+  /* All but the cursor. */
+  _still(motion, chart, curves, theme) {
+    this._reference(motion, chart, curves);
+    this.lines = curves.map(({ curve }) => this._line(curve, chart));
+    this.fit(this._box(this.lines.flat(), this.axes), quatspline.PathView.MARGIN);
     this._shell(theme);
-    curves.forEach((item, i) => this.stroke(lines[i].map((p) => this._at(p)), item.color, 2.4, item.dash));
+    curves.forEach((item, i) => this.stroke(this.lines[i].map((p) => this._at(p)), item.color, 2.4, item.dash));
     curves.forEach((item) => this._tangents(motion, item, chart));
     this._keyframes(motion, chart, theme);
-    curves.forEach((item, i) => this._cursor(motion, item, lines[i], t));
   }
 
   /* The stereographic chart looks from the mean of the first curve, so that it stays away from the pole. */

@@ -1,11 +1,12 @@
 /* The player: two schemes on one motion, a timeline, and what all views show at one time. */
 "use strict";
 quatspline.Player = class extends quatspline.Clock {
+  static STAGE = quatspline.Stage;
   static SECONDS = [4, 20]; /* a motion lasts 1.5 s a segment, between these */
 
   constructor(place, motions) {
     super(place, motions);
-    this.stages = [...place.querySelectorAll("canvas.stage")].map((c) => new quatspline.Stage(c, (view) => this._turned(view)));
+    this.stages = [...place.querySelectorAll("canvas.stage")].map((c) => new this.constructor.STAGE(c, (view) => this._turned(view)));
     this.path = new quatspline.PathView(place.querySelector("canvas.path"), () => this.draw());
     this._redraw("a", "b", "layout", "chart", "follow");
     this.choose(0);
@@ -47,7 +48,7 @@ quatspline.Player = class extends quatspline.Clock {
     const { motion, time } = this, { multiply, conjugate, scaled } = quatspline.geometry;
     const q = motion.orientation(curve.name, time), omega = motion.between(curve.omega, time);
     const world = multiply(multiply(q, [0, ...omega]), conjugate(q)).slice(1);
-    const largest = curve.norms.omega.reduce((m, v) => Math.max(m, v), 0) || 1;
+    const largest = curve.fastest ??= curve.norms.omega.reduce((m, v) => Math.max(m, v), 0) || 1;
     return { scheme: curve.name, q, place: motion.between(motion.places, time), color, spin: scaled(world, 1 / largest) };
   }
 

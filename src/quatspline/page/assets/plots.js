@@ -3,10 +3,13 @@
 quatspline.plots = (() => {
   const { element: make, data, theme } = quatspline;
   const looks = data.read("looks") || {};
-  const drawn = [];
+  const PAPER = 680; /* pixels across A4 between margins */
+  const printed = new Set();
+  let printing = false;
 
   const OPTIONS = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d", "sendDataToCloud"] };
   const FAINT = 0.12;
+  const LEAST_EXCESS = 1e-4; /* a smaller excess over 1 is drawn there */
 
   function look(name) {
     return looks[name] || { light: "#444444", dark: "#bbbbbb", symbol: "circle", dash: "solid" };
@@ -24,20 +27,26 @@ quatspline.plots = (() => {
   }
 
   function layout(more) {
-    const narrow = window.innerWidth < 640;
+    const narrow = printing || window.innerWidth < 640;
     const legend = narrow ? { orientation: "h", y: -0.28, yanchor: "top" } : { x: 1.02, y: 1 };
     return {
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", hovermode: "closest",
       font: { family: "system-ui, sans-serif", size: narrow ? 12 : 14, color: theme.color("text") },
-      margin: { l: 60, r: 20, t: 16, b: 50 },
+      margin: { l: 60, r: 20, t: 16, b: 50 }, ...(printing ? { width: PAPER } : { width: undefined, autosize: true }),
       hoverlabel: { bgcolor: theme.color("raised"), bordercolor: theme.color("line"), font: { color: theme.color("text") } },
       legend: { ...legend, font: { size: 12 }, itemclick: "toggle", itemdoubleclick: "toggleothers" },
       ...more,
     };
   }
 
+  /* What is said in place of a plot without data. */
+  function nothing(text) {
+    const font = { size: 15, color: theme.color("muted") };
+    return [{ text, showarrow: false, xref: "paper", yref: "paper", x: 0.5, y: 0.5, font }];
+  }
+
   function show(place, traces, more) {
-    return Plotly.react(place, traces, layout(more), OPTIONS);
+    return Plotly.react(place, traces, layout(more), { ...OPTIONS, displayModeBar: window.innerWidth < 640 ? false : "hover" });
   }
 
   function chooser(label, options, change) {
@@ -62,20 +71,27 @@ quatspline.plots = (() => {
     }, { rootMargin: "400px" });
     watch.observe(place);
     theme.follow(() => near && draw());
-    drawn.push(place);
+    printed.add(() => { near = near || printing; if (near) draw(); });
   }
 
-  return { axis, show, chooser, checkbox, lazily, seriesColor, look, FAINT, all: drawn };
+  /* Paper shows every plot, as wide as it is. */
+  const drawAll = (on) => () => { printing = on; printed.forEach((draw) => draw()); };
+  window.addEventListener("beforeprint", drawAll(true));
+  window.addEventListener("afterprint", drawAll(false));
+
+  return { axis, show, nothing, chooser, checkbox, lazily, seriesColor, look, FAINT, LEAST_EXCESS };
 })();
 
 quatspline.TablePlot = class {
   static DASHES = ["solid", "dash", "dot", "dashdot"];
+  static MOST = 8; /* lines in colour at first; the others are grey until they are picked in the legend */
 
   constructor(place) {
     const { data, plots, element: make } = quatspline;
     this.spec = JSON.parse(place.dataset.plot);
     this.source = data.table(this.spec.table);
     this.chart = make("div", { class: "chart" });
+    this.heading = make("h4");
     const redraw = () => this.draw();
     const pairs = (list) => list.map(({ column, label }) => [column, label]);
     this.x = plots.chooser("Across", pairs(this.spec.x), redraw);
@@ -83,9 +99,11 @@ quatspline.TablePlot = class {
     this.z = plots.chooser("Colour", pairs(this.spec.z), redraw);
     this.facets = this.spec.facets.map(({ column, label }) => ({ column, ...plots.chooser(label, [], () => { this._narrow(); redraw(); }) }));
     this._narrow();
+    if (this.spec.kind === "map") this._seek();
+    this.lit = this._lit();
     this.picked = plots.chooser("Pick out", [["", "none"], ...this._values(this.spec.series)], redraw);
     this.logs = ["x", "y"].map((name, i) => plots.checkbox(`log ${name}`, this.spec.log[i], redraw));
-    place.replaceChildren(make("div", { class: "bar" }, ...this._controls()), this.chart);
+    place.replaceChildren(make("div", { class: "bar" }, ...this._controls()), this.heading, this.chart);
     plots.lazily(place, redraw);
   }
 
@@ -114,6 +132,27 @@ quatspline.TablePlot = class {
     }
   }
 
+  /* What is in colour at first: the schemes that lead, and from the table what there is room for. */
+  _lit() {
+    const there = this._values(this.spec.series).map(([value]) => value);
+    const leading = this.spec.lit.filter((name) => there.includes(name));
+    const rest = there.filter((name) => !leading.includes(name));
+    return new Set([...leading, ...rest].slice(0, quatspline.TablePlot.MOST));
+  }
+
+  /* A map opens where it has data: on the first choices for which a row holds all three numbers. */
+  _seek() {
+    const shown = [this.x, this.y, this.z].map(({ select }) => this.source.columns.indexOf(select.value));
+    const full = (row) => shown.every((j) => row[j] !== null);
+    if (this._rows().some(full)) return;
+    const first = this.source.rows.find(full);
+    if (!first) return;
+    for (const { column, select } of this.facets) {
+      select.value = String(first[this.source.columns.indexOf(column)]);
+      this._narrow();
+    }
+  }
+
   _rows() {
     const kept = this.facets.map(({ column, select }) => [this.source.columns.indexOf(column), select.value]);
     return this.source.rows.filter((row) => kept.every(([j, v]) => String(row[j]) === v));
@@ -126,36 +165,60 @@ quatspline.TablePlot = class {
     const [xlog, ylog] = this.logs.map((log) => log.box.checked);
     const traces = this.spec.kind === "map" ? this._map(at(this.x), at(this.y), at(this.z)) : this._lines(at(this.x), at(this.y));
     const map = this.spec.kind === "map";
+    const excess = (chooser, log) => !map && log && this.spec.ratios.includes(chooser.select.value);
     const axes = { xaxis: plots.axis(text(this.x), !map && xlog), yaxis: plots.axis("", !map && ylog) };
     if (map) Object.values(axes).forEach((axis) => { axis.type = "category"; axis.showgrid = false; });
     /* What goes up stands above the plot: long names would not fit along the axis. */
-    const above = map ? `${text(this.z)}; up: ${text(this.y)}` : text(this.y);
-    const title = { text: above, x: 0, xref: "container", xanchor: "left", y: 1, yref: "container", yanchor: "top", pad: { t: 6 }, font: { size: 14 } };
-    plots.show(this.chart, traces, { ...axes, title, showlegend: !map, margin: { l: 60, r: 20, t: 40, b: 50 } });
+    const above = map ? `${text(this.z)}; up: ${text(this.y)}` : `${text(this.y)}${excess(this.y, ylog) ? ": excess over 1" : ""}`;
+    const annotations = traces.some((trace) => trace.x.length) ? [] : plots.nothing("no data for this choice");
+    this.heading.textContent = above;
+    plots.show(this.chart, traces, { ...axes, annotations, showlegend: !map, margin: { l: 60, r: 20, t: 30, b: 50 } });
+    this._legend();
+  }
+
+  /* A click in the legend takes a series into colour or back into grey. */
+  _legend() {
+    if (this.listening) return;
+    this.listening = true;
+    this.chart.on("plotly_legendclick", ({ data, curveNumber }) => {
+      const name = data[curveNumber].meta;
+      if (!this.lit.delete(name)) this.lit.add(name);
+      this.draw();
+      return false;
+    });
+    this.chart.on("plotly_legenddoubleclick", ({ data, curveNumber }) => {
+      this.lit = new Set([data[curveNumber].meta]);
+      this.draw();
+      return false;
+    });
   }
 
   _lines(i, j) {
-    const { plots } = quatspline;
+    const { plots, theme } = quatspline;
+    /* Of ratios to a least value, a logarithmic axis shows what exceeds 1. */
+    const excess = [i, j].map((c, k) => this.logs[k].box.checked && this.spec.ratios.includes(this.source.columns[c]));
+    const shown = (v, k) => (excess[k] ? Math.max(v - 1, plots.LEAST_EXCESS) : v);
     const [s, ...split] = [this.spec.series, ...this.spec.split].map((name) => this.source.columns.indexOf(name));
     const groups = new Map();
     for (const row of this._rows()) {
       if (row[i] === null || row[j] === null) continue;
       const label = [s, ...split].map((c) => row[c]).filter((v) => v !== null).join(", ");
       if (!groups.has(label)) groups.set(label, { name: row[s], points: [] });
-      groups.get(label).points.push([row[i], row[j]]);
+      groups.get(label).points.push([shown(row[i], 0), shown(row[j], 1)]);
     }
     const picked = this.picked.select.value, dashes = quatspline.TablePlot.DASHES;
     const nth = new Map(); /* lines of one series so far: they differ by dash */
     return [...groups].map(([label, { name, points }]) => {
       points.sort((p, q) => p[0] - q[0]);
+      const key = String(name), gray = !this.lit.has(key) && picked !== key;
       const n = nth.get(name) || 0;
       nth.set(name, n + 1);
-      const look = { ...plots.look(name) }, color = plots.seriesColor(name), chosen = picked === String(name);
+      const look = { ...plots.look(name) }, color = gray ? theme.color("ghost") : plots.seriesColor(name), chosen = picked === key;
       if (n) look.dash = dashes[n % dashes.length];
       return {
-        name: label, x: points.map((p) => p[0]), y: points.map((p) => p[1]), type: "scatter",
+        name: label, meta: key, x: points.map((p) => p[0]), y: points.map((p) => p[1]), type: "scatter", zorder: gray ? 0 : 1, legendrank: gray ? 1001 : 1,
         mode: this.spec.kind === "points" ? "markers" : "lines+markers", opacity: picked && !chosen ? plots.FAINT : 1,
-        line: { color, dash: look.dash, width: chosen ? 3.5 : 1.6 }, marker: { color, symbol: look.symbol, size: chosen ? 10 : 7 },
+        line: { color, dash: look.dash, width: chosen ? 3.5 : gray ? 1 : 1.8 }, marker: { color, symbol: look.symbol, size: chosen ? 10 : gray ? 5 : 7 },
       };
     });
   }

@@ -12,7 +12,8 @@ quatspline.View = class {
     this.turn = [20, -60];
     this._drag();
     canvas.addEventListener("keydown", (event) => this._key(event));
-    new ResizeObserver(() => { this.resize(); changed(); }).observe(canvas);
+    const paper = window.matchMedia("print"); /* which shows the picture as it was on the screen */
+    new ResizeObserver(() => { if (!paper.matches) { this.resize(); changed(); } }).observe(canvas);
     this.resize();
   }
 
@@ -67,6 +68,22 @@ quatspline.View = class {
 
   clear() { this.pen.clearRect(0, 0, this.width, this.height); }
 
+  /* What stays while time goes on: painted anew only when its state, the camera, the size or the look changed. */
+  behind(state, paint) {
+    const { canvas } = this, key = [...state, this.turn, this.width, this.height, canvas.width, quatspline.theme.look()].join();
+    this.still ??= document.createElement("canvas");
+    if (key !== this.painted) {
+      this.painted = key;
+      Object.assign(this.still, { width: canvas.width, height: canvas.height });
+      const own = this.pen;
+      this.pen = this.still.getContext("2d");
+      this.pen.setTransform(own.getTransform());
+      paint();
+      this.pen = own;
+    }
+    if (canvas.width && canvas.height) this.pen.drawImage(this.still, 0, 0, this.width, this.height);
+  }
+
   stroke(points, color, width, dash = []) {
     const { pen } = this;
     pen.beginPath();
@@ -116,17 +133,15 @@ quatspline.Stage = class extends quatspline.View {
 
   constructor(canvas, changed) {
     super(canvas, changed);
-    this.backdrop = document.createElement("canvas");
     this.poses = [];
   }
 
   /* Draw what moves: [{scheme, q, place, color, spin, arrow}], spin being the world's angular velocity as a share of the largest. */
   draw(motion, movers, follow) {
     const { geometry } = quatspline, axes = this.axes;
-    this._aim(motion, axes, follow ? movers[0].place : null);
+    if (follow) this._aim(motion, axes, movers[0].place);
     this.clear();
-    this._backdrop(motion, axes, follow);
-    this.pen.drawImage(this.backdrop, 0, 0, this.width, this.height);
+    this.behind([motion.name, follow && this.centre], () => this._backdrop(motion, axes, follow));
     const posed = movers.map((mover) => ({ ...mover, matrix: geometry.matrix(mover.q) }));
     this._paint(motion, posed, axes, this.pen);
     for (const mover of posed) this._spin(motion, mover, axes);
@@ -143,17 +158,10 @@ quatspline.Stage = class extends quatspline.View {
     this.fit(seen.flatMap((p) => [add(p, [-wide, -wide, 0]), add(p, [wide, wide, 0])]), quatspline.Stage.MARGIN);
   }
 
-  /* The path and pale bodies at the keyframes: drawn anew only when something but time changed. */
+  /* The path and pale bodies at the keyframes. */
   _backdrop(motion, axes, follow) {
-    const { theme } = quatspline;
-    const state = [motion.name, this.turn, this.width, this.height, this.canvas.width, theme.look(), follow && this.centre].join();
-    if (state === this.state) return;
-    this.state = state;
-    this.backdrop.width = this.canvas.width;
-    this.backdrop.height = this.canvas.height;
-    const pen = this.backdrop.getContext("2d"), own = this.pen;
-    pen.setTransform(own.getTransform());
-    this.pen = pen;
+    const { theme } = quatspline, { pen } = this;
+    if (!follow) this._aim(motion, axes, null);
     const { apply, matrix } = quatspline.geometry;
     this.stroke(motion.places.map((p) => this.at(apply(axes, p))), theme.color("muted"), 1);
     pen.globalAlpha = quatspline.Stage.GHOST;
@@ -163,7 +171,6 @@ quatspline.Stage = class extends quatspline.View {
       ghosts.forEach((ghost) => this._paint(motion, [ghost], axes, pen));
     }
     pen.globalAlpha = 1;
-    this.pen = own;
   }
 
   _paint(motion, movers, axes, pen) {

@@ -11,12 +11,21 @@
   });
   quatspline.tables = tables;
 
+  const chooser = document.getElementById("chooser");
+  if (chooser) quatspline.chooser = new quatspline.Chooser(chooser, quatspline.data.read("choices"));
+
   document.querySelectorAll("[data-plot]").forEach((place) => new quatspline.TablePlot(place));
   const motions = (quatspline.data.read("scenes") || []).map((packed) => new quatspline.Motion(packed));
   const player = document.getElementById("player");
   if (player && motions.length) {
     document.querySelectorAll("[data-motion]").forEach((place) => new quatspline.MotionPlot(place, motions));
     quatspline.player = new quatspline.Player(player, motions);
+  }
+
+  const drawn = document.getElementById("drawn");
+  if (drawn && motions.length) {
+    const { body, knots, keyframes } = motions[0];
+    quatspline.drawing = new quatspline.Drawing(drawn, body, knots, keyframes);
   }
 
   const recorded = document.getElementById("replay");

@@ -8,6 +8,8 @@ quatspline.Strip = class {
     this.view = new quatspline.View(canvas, () => this.again && this.again());
     this.rate = canvas.dataset.rate;
     this.part = [0, 1];
+    this.numbers = new WeakMap();
+    this.count = 0;
     const to = (event) => {
       const box = canvas.getBoundingClientRect(), edge = quatspline.Strip.EDGE, [from, until] = this.part;
       seek(from + (until - from) * (event.clientX - box.left - edge) / (box.width - 2 * edge));
@@ -18,17 +20,30 @@ quatspline.Strip = class {
 
   draw(motion, curves, t) {
     this.again = () => this.draw(motion, curves, t);
-    const { view } = this, { theme, data } = quatspline;
+    const { view } = this, { theme } = quatspline;
     const values = curves.map(({ curve }) => curve.norms[this.rate]);
-    const top = Math.max(...values.map((list) => list.reduce((m, v) => Math.max(m, v || 0), 0))) || 1;
     this.part = this._part(motion, t);
     view.clear();
-    const [from, until] = this.part.map((share) => share * motion.span);
+    const lines = values.map((list) => this._number(list));
+    view.behind([motion.name, this.part, ...lines, ...curves.map(({ color }) => color)], () => this._still(motion, curves, values));
+    const top = this.top;
+    this._vertical(motion, t, theme.color("text"), 1.4);
+    values.forEach((list, i) => view.dot(this._at(motion, t, motion.between(list, t), top), 4, curves[i].color, theme.color("ground")));
+  }
+
+  /* All but the cursor. */
+  _still(motion, curves, values) {
+    const { view } = this, { theme, data } = quatspline, [from, until] = this.part.map((share) => share * motion.span);
+    const top = this.top = Math.max(...values.map((list) => list.reduce((m, v) => Math.max(m, v || 0), 0))) || 1;
     motion.knots.forEach((knot) => knot >= from && knot <= until && this._vertical(motion, knot, theme.color("line"), 1));
     values.forEach((list, i) => this._line(motion, list, top, curves[i]));
     view.text(data.shown(top) + (view.canvas.dataset.unit || ""), [quatspline.Strip.EDGE + 2, 9], theme.color("muted"));
-    this._vertical(motion, t, theme.color("text"), 1.4);
-    values.forEach((list, i) => view.dot(this._at(motion, t, motion.between(list, t), top), 4, curves[i].color, theme.color("ground")));
+  }
+
+  /* Lists are told apart by a number each. */
+  _number(list) {
+    if (!this.numbers.has(list)) this.numbers.set(list, this.count++);
+    return this.numbers.get(list);
   }
 
   /* The shares of the whole between which the strip shows it: all, or the part that holds the cursor. */
@@ -53,6 +68,22 @@ quatspline.Strip = class {
     if (list.some(Number.isNaN)) return; /* a scheme without this rate */
     const [from, until] = this.part.map((share) => motion.locate(share * motion.span));
     const points = list.slice(from.i, until.next + 1).map((v, i) => this._at(motion, motion.t[from.i + i], v, top));
-    this.view.stroke(points, color, 2, dash);
+    this.view.stroke(this._thinned(points), color, 2, dash);
+  }
+
+  /* No more than a screen shows: of each column of pixels the first point, the lowest, the highest and the last. */
+  _thinned(points) {
+    if (points.length <= 4 * this.view.width) return points;
+    const kept = [];
+    for (let i = 0; i < points.length;) {
+      let last = i, low = i, high = i;
+      for (; last < points.length && Math.floor(points[last][0]) === Math.floor(points[i][0]); last++) {
+        if (points[last][1] < points[low][1]) low = last;
+        if (points[last][1] > points[high][1]) high = last;
+      }
+      kept.push(...[...new Set([i, Math.min(low, high), Math.max(low, high), last - 1])].map((k) => points[k]));
+      i = last;
+    }
+    return kept;
   }
 };

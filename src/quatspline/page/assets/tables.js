@@ -3,6 +3,7 @@
 quatspline.Table = class {
   static PAGE = 15;
   static CHOICES = 40; /* a text column with more values than this is searched, not listed */
+  static PRINTED = 9; /* more columns than these are printed row by row */
   static LISTS = 4;
   static LONG = 40; /* text longer than this wraps */
 
@@ -59,6 +60,7 @@ quatspline.Table = class {
     this.forth = make("button", { type: "button", onclick: () => this.turn(1) }, "Next");
     this.all = make("button", { type: "button", onclick: () => this.resize() }, "Show all rows");
     const pager = make("div", { class: "bar pager" }, this.back, this.forth, this.all, this.count);
+    this.place.classList.toggle("wide", this.source.columns.length > this.constructor.PRINTED);
     this.place.replaceChildren(controls, this.line, region, pager);
   }
 
@@ -153,7 +155,7 @@ quatspline.Table = class {
       const number = this.source.numeric[j];
       const long = !number && String(v ?? "").length > this.constructor.LONG;
       const kind = number ? "number" : long ? "long" : null;
-      return make("td", { class: kind, title: number && v !== null ? String(v) : null }, data.shown(v));
+      return make(j ? "td" : "th", { scope: j ? null : "row", "data-label": this.source.columns[j].replaceAll("_", " "), class: kind, title: number && v !== null ? String(v) : null }, data.shown(v));
     });
     const made = make("tr", {}, ...cells);
     if (this.cited && this.cited.row === row) {

@@ -35,6 +35,10 @@ quatspline.theme = (() => {
     apply(next);
   });
   preferred.addEventListener("change", () => remembered() || apply(preferred.matches ? "dark" : "light"));
+  /* Paper is white. */
+  let before = null;
+  window.addEventListener("beforeprint", () => { before = look(); apply("light"); });
+  window.addEventListener("afterprint", () => before && apply(before));
   apply(remembered() || (preferred.matches ? "dark" : "light"));
   return { color, look, follow: (f) => followers.push(f) };
 })();

@@ -1,0 +1,54 @@
+"""Many schemes in one picture: eight with colour and name, the rest grey, third-party schemes hollow."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from quatspline.catalogue import called
+from quatspline.figures import direct, style
+from quatspline.figures.direct import GREY, End
+from quatspline.figures.looks import third_party
+
+NAMED = (
+    *("slerp", "squad", "quartic", "quintic", "nielson", "kim", "local-quintic"),
+    "scipy-rotation-spline",
+)
+"""Drawn in colour where many schemes are compared: what readers know, the paper's, ours, and a library's."""
+
+SAID = f"In colour {', '.join(NAMED[:-1])} and {NAMED[-1]}, in grey all other schemes; third-party schemes are hollow."
+"""For captions."""
+
+ROOM = 0.86
+"""Of the width, for axes whose curves are named at the right."""
+
+
+def looks(name: str) -> dict[str, Any]:
+    """The style of a scheme among many."""
+    known = name in NAMED
+    own = style.scheme_style(name) if known else {"color": GREY, "marker": ".", "linestyle": "-"}
+    face = {"markerfacecolor": "white", "mew": 0.7} if third_party(name) else {}  # grey ones, too
+    return own | face | {"lw": 1.2 if known else 0.6, "ms": 3.2, "zorder": 3 if known else 2}
+
+
+def draw_curves(ax: Any, curves: Iterable[tuple[str, pd.Series, pd.Series]]) -> dict[str, End]:
+    """Draw curves (name, x, y); the ends of those with a name, at their last number."""
+    ends = {}
+    for name, x, y in curves:
+        look = looks(name)
+        ax.plot(x, y, **look)
+        finite = np.isfinite(y.to_numpy(dtype=float))
+        if name in NAMED and finite.any():
+            ends[name] = End(x[finite].iloc[-1], y[finite].iloc[-1], called(name), look["color"])
+    return ends
+
+
+def name_ends(fig: Any, panels: Mapping[Any, Mapping[str, End]]) -> None:
+    """Write names right of the curves of some axes, after all else is laid out."""
+    fig.draw_without_rendering()
+    fig.set_layout_engine("none")
+    for ax, ends in panels.items():
+        direct.label_ends(ax, list(ends.values()))
