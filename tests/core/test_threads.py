@@ -236,6 +236,10 @@ class Library(PeerCurve):
 
 def test_two_processes_import_a_peer_one_after_the_other(folder: Path) -> None:
     (folder / "library.py").write_text(PEER.format(late=LATE))
+    (folder / "asked").touch()
+    python("import quatspline as qs\nqs.scheme('library')")  # tried, with nobody to wait for
+    for trace in ("asked", "inside"):
+        (folder / trace).unlink(missing_ok=True)
     build = "qs.build('library', None, [[1, 0, 0, 0], [0, 1, 0, 0]])"
     both = "[[[1, 0, 0, 0]] * 2, [[0, 1, 0, 0]] * 2]"  # two tracks: a build within the build
     first = f"import quatspline as qs\nqs.build('library', None, {both})"
