@@ -7,6 +7,8 @@ import json
 import pandas as pd
 import pytest
 
+from desk import Desk
+from quatspline import catalogue
 from quatspline.catalogue import load
 from quatspline.cli import running
 from quatspline.figures import style
@@ -123,16 +125,14 @@ def test_a_cell_gives_the_same_rows_again(measured):
 
 
 def test_where_nothing_can_be_measured_there_is_a_table_of_reasons(tmp_path, monkeypatch):
-    module = load(files()["noise"], "experiment")
-
-    def broken(name):
-        raise TypeError(f"{name} has no such option")
-
-    monkeypatch.setattr(module, "builder", broken)
-    assert running.run(["noise"], schemes=["slerp"], size="quick", out=tmp_path, jobs=1) == []
-    table = Results(tmp_path).read_table("noise")
-    assert set(table["failure"]) == {"TypeError: slerp has no such option"}
-    assert not (tmp_path / "noise.png").exists()
+    desk = Desk(tmp_path)
+    desk.scheme("stubborn", 'raise TypeError("no such option")')
+    monkeypatch.setenv(catalogue.FOLDERS, desk.environment[catalogue.FOLDERS])
+    out = tmp_path / "results"
+    assert running.run(["noise"], schemes=["stubborn"], size="quick", out=out, jobs=1) == []
+    table = Results(out).read_table("noise")
+    assert set(table["failure"]) == {"TypeError: no such option"}
+    assert not (out / "noise.png").exists()
 
 
 @pytest.mark.parametrize(("name", "order"), [("kim", 3), ("quartic", 2), ("local-quintic", 4)])

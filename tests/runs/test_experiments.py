@@ -183,14 +183,16 @@ def test_walks_are_reproducible_and_have_their_step():
 
 
 def test_readme_quotes_the_reference_tables():
-    """Line by line: a scheme that somebody adds stands in no committed table yet.
+    """Line by line: a scheme that somebody adds stands in no committed table yet, nor is every library here.
 
     What `compare` prints quotes no table; test_docs runs it.
     """
     tables = {name: block for name, block in BLOCKS.items() if name != "compare"}
+    absent = tuple(f"| [`{n}`]" for n, item in catalogue.found().items() if item.scheme is None)
     for file in QUOTING:
         text = file.read_text(encoding="utf-8")
-        assert set(text.splitlines()) <= set(renewed(text, tables).splitlines()), file
+        lines = {line for line in text.splitlines() if not line.startswith(absent)}
+        assert lines <= set(renewed(text, tables).splitlines()), file
     assert len(findings(reader(REFERENCE))) >= 5
 
 

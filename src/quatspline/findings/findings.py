@@ -191,17 +191,25 @@ def _overshoot(cell: Ledger) -> tuple[Part, ...]:
     generic, axis = (
         cell("excursion", "over_worst", scheme=own, data=x) for x in ("generic", "one axis")
     )
-    return said(
+    found = said(
         f"The worst overshoot of a step, as a share of it, is {{generic:.2g}} for {joined(others)} on generic "
         f"keyframes and {{axis:.2g}} on keyframes about one axis; for {own} it is "
-        f"{{own_generic:.1g}} and {{own_axis:.1g}}. "
-        "Its torque energy over the least possible is {torque:.3f} in the median.",
+        f"{{own_generic:.1g}} and {{own_axis:.1g}}.",
         generic=worst("generic"),
         axis=worst("one axis"),
         own_generic=generic,
         own_axis=axis,
-        torque=cell("fairness", "median", scheme=own, data="committed"),
     )
+    return (*found, *_price(cell, own))
+
+
+def _price(cell: Ledger, scheme: str) -> tuple[Part, ...]:
+    """What a scheme's torque is, where it was measured."""
+    try:
+        torque = cell("fairness", "median", scheme=scheme, data="committed")
+    except (FileNotFoundError, LookupError):
+        return ()
+    return said(" Its torque energy over the least possible is {x:.3f} in the median.", x=torque)
 
 
 FINDINGS: tuple[tuple[str, Callable[[Ledger], tuple[Part, ...]]], ...] = (
