@@ -11,7 +11,7 @@ import pytest
 
 from desk import Desk
 from quatspline import quaternion
-from quatspline.catalogue import load, scheme, schemes, shipped
+from quatspline.catalogue import found, load, scheme, schemes, shipped
 from quatspline.figures import motions
 from quatspline.findings.findings import findings, reader
 from quatspline.instruments.blending import blending
@@ -188,7 +188,7 @@ def test_readme_quotes_the_reference_tables():
     What `compare` prints quotes no table; test_docs runs it.
     """
     tables = {name: block for name, block in BLOCKS.items() if name != "compare"}
-    absent = tuple(f"| [`{n}`]" for n, item in catalogue.found().items() if item.scheme is None)
+    absent = tuple(f"| [`{n}`]" for n, item in found().items() if item.scheme is None)
     for file in QUOTING:
         text = file.read_text(encoding="utf-8")
         lines = {line for line in text.splitlines() if not line.startswith(absent)}

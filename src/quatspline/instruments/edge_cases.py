@@ -51,9 +51,10 @@ def edge_result(case: EdgeCase, name: str, **options: Any) -> Row:
     better), of a wrong one where it is at fault; relative: its share of the largest step between keyframes
     (of 1 rad at rest); failure: the reason.
     """
-    cls = scheme(name)
-    checked = "keys" if case.truth is None else CHECKED[_claim(case, cls)]
+    checked = None
     try:
+        cls = scheme(name)
+        checked = "keys" if case.truth is None else CHECKED[_claim(case, cls)]
         curve = cls(case.times, case.keyframes, closed=case.closed, **options)
         return {"checked": checked, **_judged(case, curve)}
     except Exception as error:  # a refusal is a result, too

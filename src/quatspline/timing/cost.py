@@ -95,7 +95,9 @@ def _affordable(
         try:
             cost = budget.forecast(whole, size, linear=task.linear, sizes=rungs(size, least))
             if budget.affords(cost):
-                yield name, task.prepare(size)
+                call = task.prepare(size)
+                call()  # a size that fails by itself is told here
+                yield name, call
             else:
                 failures[name] = OVER
         except Exception as error:  # a scheme that does not apply or fails is a row with its reason
