@@ -82,8 +82,8 @@ def costs(
     failures: dict[str, str] = {}
     calls = _affordable(tasks, size, least, budget, failures)
     timings = timed(calls, slow=SLOW * budget.limit, rounds=rounds, least=duration, seed=seed)
-    found = {name: Cost(failure=failure) for name, failure in failures.items()}
-    return found | {name: Cost(t.median, t.iqr, t.rounds) for name, t in timings.items()}
+    found = {name: Cost(t.median, t.iqr, t.rounds) for name, t in timings.items()}
+    return found | {name: Cost(failure=failure) for name, failure in failures.items()}
 
 
 def _affordable(
@@ -95,13 +95,23 @@ def _affordable(
         try:
             cost = budget.forecast(whole, size, linear=task.linear, sizes=rungs(size, least))
             if budget.affords(cost):
-                call = task.prepare(size)
-                call()  # a size that fails by itself is told here
-                yield name, call
+                yield name, _telling(task.prepare(size), partial(failures.__setitem__, name))
             else:
                 failures[name] = OVER
         except Exception as error:  # a scheme that does not apply or fails is a row with its reason
             failures[name] = reason(error)
+
+
+def _telling(call: Call, tell: Callable[[str], object]) -> Call:
+    """The call, which tells of a size that fails though smaller ones did not, and goes on."""
+
+    def made() -> None:
+        try:
+            call()
+        except Exception as error:
+            tell(reason(error))
+
+    return made
 
 
 def _whole(task: Task, size: int) -> Call:
