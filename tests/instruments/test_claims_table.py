@@ -214,7 +214,7 @@ def test_works_that_were_not_read_are_in_the_bibliography() -> None:
 
 def test_figure_and_caption_say_the_verdicts(table: pd.DataFrame) -> None:
     module = load(files()["claims"], "experiment")
-    with style.house():
+    with style.applied():
         figure = module.draw(table)
     texts = {text.get_text() for text in figure.axes[0].texts}
     others = table[table["claim"].isin([claim.text for claim in published("quartic")])]
@@ -243,7 +243,7 @@ def test_kim_is_not_red_for_the_papers_cost(of_kim: pd.DataFrame) -> None:
     assert len(departing) > 0
     assert (departing["fault"] == PUBLICATION).all()
     module = load(files()["claims"], "experiment")
-    with style.house():
+    with style.applied():
         axes = module.draw(of_kim).axes[0]
     shown = axes.images[0].get_array()
     red = list(module.COLORS).index(DEPARTS)
