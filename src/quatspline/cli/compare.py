@@ -1,4 +1,4 @@
-"""The command ``compare``: table, figures, a recommendation and a page on somebody's own keyframes, in a folder."""
+"""The command ``compare``: table, figures, a recommendation and a page on a user's own keyframes, in a folder."""
 
 from __future__ import annotations
 
