@@ -35,7 +35,7 @@ KEPT: tuple[Section, ...] = (
     Section(
         "kept",
         "Schemes compared",
-        "One row per scheme, at the frames left out. Sort by any column: the line above the table states the criterion.",
+        "One row per scheme, at frames left out. Sort by any column: the line above the table states the criterion.",
         ("kept", "joints"),
         (
             Plot(
