@@ -28,7 +28,7 @@ ASSETS = Path(__file__).parent / "assets"
 SCRIPTS = (
     *("data", "address", "theme", "contents", "figures", "chooser", "tables", "plots"),
     *("scenes", "geometry", "stage", "path", "strip", "clock", "player"),
-    *("jets", "curves", "drawing"),
+    *("jets", "curves", "pasted", "drawing"),
     *("recording", "wires", "replay", "start"),
 )
 """Scripts in the order that they are run."""
