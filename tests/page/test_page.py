@@ -378,6 +378,8 @@ def test_positions_of_ones_own_are_followed() -> None:
     still = motion.own_scene("mine", "Mine", keyframes, schemes=["slerp"])
     assert not still.positions(np.array([0.5, 2.0])).any()
     assert motion.player_data(still)["pair"] == ["slerp"]
+    both = motion.own_scene("mine", "Mine", keyframes, schemes=["slerp", "quartic"])
+    assert motion.player_data(both)["pair"] == ["quartic", "slerp"]  # nielson is not offered
 
 
 # -- after a run --------------------------------------------------------------------------------
