@@ -95,7 +95,17 @@ def test_derivations_are_linked_from_folders_beside_the_documentation(tmp_path: 
     for scheme in ("quartic", "squad", "scipy-slerp"):
         assert (REFERENCE / beside.of(scheme)).is_file()
     assert beside.of("unheard-of") == ""
-    assert Derivations(tmp_path).of("quartic") == ""
+    assert Derivations(tmp_path).of("quartic") == Derivations(tmp_path).reading("speed") == ""
+
+
+def test_tables_are_linked_to_what_their_columns_mean() -> None:
+    beside = Derivations(REFERENCE)
+    for table in Folder(REFERENCE).tables:
+        page, _, anchor = beside.reading(table).partition("#")
+        assert (REFERENCE / page).is_file(), table
+        assert re.search(rf"^## .*`{table}`", (REFERENCE / page).read_text("utf-8"), re.MULTILINE)
+        assert table in anchor
+    assert beside.reading("unheard-of") == ""
 
 
 def test_table_1_has_the_twelve_rows_of_the_paper() -> None:

@@ -82,7 +82,7 @@ def facts(folder: Folder) -> pd.DataFrame:
     rows["keeps_smooth"] = keeps.where(least.notna() & worst.notna())
     rows["faults"] = rows["worst_failure"].notna().map({True: YES, False: NO})
     rows["iterates"] = rows["found"].map(_iterates).astype(object)
-    rows["wander"] = rows["scheme"].map(_wandering(folder))
+    rows = rows.join(_excursions(folder), on="scheme")
     return rows.sort_values("torque", kind="stable")
 
 
@@ -99,13 +99,16 @@ def _iterates(item: Any) -> str | None:
     return YES if item.scheme.iterative else NO
 
 
-def _wandering(folder: Folder) -> dict[str, float]:
-    """Degrees that schemes wander at most during long holds; nothing where that was not measured."""
+def _excursions(folder: Folder) -> pd.DataFrame:
+    """By scheme: degrees that it wanders at most during long holds, and the largest share of steps that it overshoots.
+
+    Nothing where that was not measured.
+    """
     if "excursion" not in folder.tables:
-        return {}
+        return pd.DataFrame({"wander": [], "overshot": []}, dtype=float)
     table = folder.frame("excursion")
-    rows = table[table["data"].eq(HOLD)]
-    return dict(zip(rows["scheme"], rows["wander_worst"], strict=True))
+    holds = table[table["data"].eq(HOLD)].set_index("scheme")["wander_worst"]
+    return pd.DataFrame({"wander": holds, "overshot": table.groupby("scheme")["overshot"].max()})
 
 
 # -- questions ----------------------------------------------------------------------------------

@@ -15,6 +15,7 @@ from quatspline.findings.findings import Finding, findings
 from quatspline.findings.quotes import Quote
 from quatspline.page import plots, rankings, sections
 from quatspline.page.chooser import chooser
+from quatspline.page.derivations import Derivations
 from quatspline.page.folder import Folder
 from quatspline.page.glossary import column
 from quatspline.page.motion import Scene, player_data
@@ -77,6 +78,7 @@ def document(
         "quick": quick(folder),
         "reference": place() is not None,
         "beside": Beside(folder),
+        "docs": Derivations(folder.path),
         "data": list(_data(folder, motions)),
         "style": Markup((ASSETS / "page.css").read_text(encoding="utf-8")),
         "plotly": Markup(_plotly()),
