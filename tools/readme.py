@@ -17,8 +17,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from textwrap import fill
 
-from quatspline.catalogue import PACKAGE, found, ours
+from quatspline.catalogue import found, ours
 from quatspline.curve import Curve
+from quatspline.discovery import PACKAGE
 from quatspline.findings import targets
 from quatspline.findings.findings import findings, lines, reader
 from quatspline.findings.headlines import headlines

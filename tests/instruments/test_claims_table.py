@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from quatspline.catalogue import load, schemes, shipped
+from quatspline.catalogue import schemes
 from quatspline.claims import paper_probes, probes
 from quatspline.claims.claim import (
     DEPARTS,
@@ -26,8 +26,10 @@ from quatspline.claims.claim import (
     shown,
 )
 from quatspline.claims.published import published, works
+from quatspline.discovery import shipped
 from quatspline.figures import style
 from quatspline.runs.experiment import Run, files
+from quatspline.system.loading import load
 
 OURS = ["slerp", "quartic", "nielson", "shoemake-bezier"]
 PAPERS = "printed Q'' at a knot is the curve's, steps about any axes"

@@ -6,8 +6,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from quatspline.catalogue import load, shipped
+from quatspline.discovery import shipped
 from quatspline.runs.experiment import Run
+from quatspline.system.loading import load
 from quatspline.timing import floors, speed
 from quatspline.timing.interleaved import Timing
 from quatspline.timing.speed import Timed

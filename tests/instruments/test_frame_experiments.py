@@ -11,10 +11,10 @@ import pytest
 from scipy.interpolate import make_interp_spline
 from scipy.spatial.transform import Rotation
 
-from quatspline.catalogue import load
 from quatspline.figures import style
 from quatspline.instruments.frame_error import smooth_constant, worst_constant
 from quatspline.runs.experiment import Run, files
+from quatspline.system.loading import load
 from quatspline.timing.nearest_rotation import by_svd, measured, noisy, walked
 from quatspline.trajectories.rolling import PERIOD, rolling, rolling_matrices
 

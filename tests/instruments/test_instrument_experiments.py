@@ -9,11 +9,11 @@ import pytest
 
 from desk import Desk
 from quatspline import catalogue
-from quatspline.catalogue import load
 from quatspline.cli import running
 from quatspline.figures import style
 from quatspline.runs.experiment import Run, files
 from quatspline.runs.results import Results
+from quatspline.system.loading import load
 
 SCHEMES = ["slerp", "squad", "shoemake-bezier"]
 """One that is local, one with neighbours, and one that refuses uneven times."""

@@ -12,13 +12,13 @@ import pandas as pd
 import pytest
 from scipy.optimize import minimize_scalar
 
-from quatspline.catalogue import load
 from quatspline.figures import style
 from quatspline.findings.findings import FINDINGS
 from quatspline.findings.quotes import Ledger
 from quatspline.instruments.slerp_variants import largest_error, nlerp_error
 from quatspline.runs.experiment import Run, files
 from quatspline.runs.results import Results
+from quatspline.system.loading import load
 
 ROUNDING = 3e-15
 

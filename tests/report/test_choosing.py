@@ -9,13 +9,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from quatspline.catalogue import called, load
+from quatspline.catalogue import called
 from quatspline.cli import running
 from quatspline.figures import style
 from quatspline.findings import decisions
 from quatspline.findings.findings import findings, reader
 from quatspline.runs.experiment import Run, experiments, files
 from quatspline.runs.results import Results
+from quatspline.system.loading import load
 
 LESS = {"a": -1, "b": -1}
 

@@ -11,7 +11,8 @@ from typing import Any
 
 import pandas as pd
 
-from quatspline.catalogue import PAPERS, Found, found, ours
+from quatspline.catalogue import PAPERS, found, ours
+from quatspline.discovery import Found
 from quatspline.findings.choices import CHOICES, NO, YES, Choice
 from quatspline.findings.decisions import TABLE
 from quatspline.instruments.trials import Row, records
