@@ -33,6 +33,7 @@ def page(opened: Any) -> Opened:
         {"rates": "velocity", "closed": "yes", "safe": "yes"},
         {"large": "yes", "rates": "acceleration"},
         {"holds": "yes"},
+        {"holds": "overshoot"},
     ],
 )
 def test_answers_filter_as_the_conditions_do(

@@ -68,6 +68,7 @@ KEEPS = Condition("keeps_smooth", "=", YES)
 SOLVES_NOTHING = Condition("iterates", "=", NO)
 FAULTLESS = Condition("faults", "=", NO)
 STILL = Condition("wander", "<=", HOLDS_STILL)
+NO_OVERSHOOT = Condition("overshot", "<=", 0.0)
 
 CHOICES: tuple[Choice, ...] = (
     Choice(
@@ -86,5 +87,12 @@ CHOICES: tuple[Choice, ...] = (
     Choice("closed", "Must it run closed?", (Answer(YES, YES, (CLOSES,)),)),
     Choice("safe", "Must it never fail?", (Answer(YES, YES, (MEETS, SOLVES_NOTHING, FAULTLESS)),)),
     Choice("large", "Are steps larger than 90 degrees?", (Answer(YES, YES, (MEETS, KEEPS)),)),
-    Choice("holds", "Does the body hold still between keyframes?", (Answer(YES, YES, (STILL,)),)),
+    Choice(
+        "holds",
+        "Must it hold still between keyframes, or never overshoot?",
+        (
+            Answer(YES, "hold still", (STILL,)),
+            Answer("overshoot", "hold still, and overshoot no step", (STILL, NO_OVERSHOOT)),
+        ),
+    ),
 )
