@@ -9,10 +9,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from quatspline.catalogue import load, scheme, shipped
+from quatspline.catalogue import scheme
 from quatspline.curve import Curve
+from quatspline.discovery import shipped
 from quatspline.runs.experiment import Run
 from quatspline.segments import CHUNK, LAZY
+from quatspline.system.loading import load
 from quatspline.timing import cost, speed
 from quatspline.timing.budget import Budget, Call, calls, seconds
 from quatspline.trajectories.walks import walk

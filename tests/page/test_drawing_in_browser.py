@@ -198,7 +198,7 @@ def test_keyframes_are_added_and_removed(page: Opened) -> None:
 
 
 def test_script_per_change_is_told(page: Opened, record_property: Any) -> None:
-    """Measured and reported: what a drag costs a frame."""
+    """Measured and reported: what a drag costs per frame."""
     cost = page(
         "(() => { const d = quatspline.drawing, all = [];"
         " for (let i = 0; i < 20; i++) { const t = performance.now();"

@@ -1,4 +1,4 @@
-"""The chooser at the top of the page: six questions over one table with a row a scheme, nine columns.
+"""The chooser at the top of the page: six questions over one table with a row per scheme, nine columns.
 
 What is measured comes from the folder's tables `choosing` and `excursion`, what is claimed (how far ahead a
 segment looks, whether a scheme iterates) from the catalogue.
@@ -11,7 +11,8 @@ from typing import Any
 
 import pandas as pd
 
-from quatspline.catalogue import PAPERS, Found, found, ours
+from quatspline.catalogue import PAPERS, found, ours
+from quatspline.discovery import Found
 from quatspline.findings.choices import CHOICES, NO, YES, Choice
 from quatspline.findings.decisions import TABLE
 from quatspline.instruments.trials import Row, records

@@ -7,7 +7,7 @@ import re
 from functools import cache
 from pathlib import Path
 
-from quatspline.catalogue import shipped
+from quatspline.discovery import shipped
 
 INDEX = "schemes.md"
 ROW = re.compile(r"^\| \[`([\w-]+)`\]\((\S+\.md)\) \|", re.MULTILINE)

@@ -9,7 +9,7 @@ from typing import Any
 
 import pandas as pd
 
-from quatspline.catalogue import shipped
+from quatspline.discovery import shipped
 from quatspline.findings.findings import reader
 from quatspline.findings.quotes import Cell, Quote
 from quatspline.page.folder import Folder
