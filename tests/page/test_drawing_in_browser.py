@@ -90,7 +90,7 @@ def test_overshoot_is_that_of_the_table(page: Opened) -> None:
     assert page("quatspline.drawing.motion.overshoot('monotone-quintic')") < 1e-6
     assert page("quatspline.drawing.motion.overshoot('squad')") > 5.0
     page.page.wait_for_function(
-        "[...document.querySelectorAll('#drawn .measured tbody tr')].some((row) => "
+        "() => [...document.querySelectorAll('#drawn .measured tbody tr')].some((row) => "
         "row.cells[0].textContent === 'squad' && Number(row.cells[1].textContent) > 5)"
     )
 
@@ -254,7 +254,7 @@ def test_keyframes_are_added_and_removed(page: Opened) -> None:
 
 
 def test_script_per_change_is_told(page: Opened, record_property: Any) -> None:
-    """Measured and reported: what a drag costs a frame."""
+    """Measured and reported: what a drag costs per frame."""
     cost = page(
         "(() => { const d = quatspline.drawing, all = [];"
         " for (let i = 0; i < 20; i++) { const t = performance.now();"

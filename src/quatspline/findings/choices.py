@@ -1,4 +1,4 @@
-"""The questions of somebody who has to take a scheme, as conditions on a table with one row a scheme.
+"""The questions of a user who has to choose a scheme, as conditions on a table with one row per scheme.
 
 They are asked in three places, from here: `docs/choosing.md` has a heading for each, `decisions` takes its
 conditions from them, and the page's chooser filters by them in the browser, which gets them as JSON.

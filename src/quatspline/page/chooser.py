@@ -1,4 +1,4 @@
-"""The chooser at the top of the page: six questions over one table with a row a scheme, nine columns.
+"""The chooser at the top of the page: six questions over one table with a row per scheme, nine columns.
 
 What is measured comes from the folder's tables `choosing` and `excursion`, what is claimed (how far ahead a
 segment looks, whether a scheme iterates) from the catalogue.

@@ -23,7 +23,7 @@ class Plot:
     ----------
     table : the table's name
     x, y : columns of the axes; of a map, the first of each
-    kind : lines a series, a point a row, or a map of z over x and y
+    kind : lines per series, a point per row, or a map of z over x and y
     z : columns of a map's colour
     series : the column whose values are told apart, each of which can be picked out or hidden
     split : columns that divide a series into several lines

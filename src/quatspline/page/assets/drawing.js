@@ -3,8 +3,8 @@
 
 /* A motion through keyframes that change: what `Motion` is, computed here. */
 quatspline.OwnMotion = class extends quatspline.Sampled {
-  static PARTS = 32; /* samples a segment ... */
-  static SAMPLES = [9600, 4]; /* ... and fewer where there are many segments: in all, and a segment at least */
+  static PARTS = 32; /* samples per segment ... */
+  static SAMPLES = [9600, 4]; /* ... and fewer where there are many segments: in all, and per segment at least */
   static BEFORE = 1e-4; /* of a segment: the sample before its end, so that a jump is a step and not a slope */
   static APART = 1.15; /* bodies stand so far apart, in body lengths */
 
