@@ -90,7 +90,7 @@ def test_overshoot_is_that_of_the_table(page: Opened) -> None:
     assert page("quatspline.drawing.motion.overshoot('monotone-quintic')") < 1e-6
     assert page("quatspline.drawing.motion.overshoot('squad')") > 5.0
     page.page.wait_for_function(
-        "[...document.querySelectorAll('#drawn .measured tbody tr')].some((row) => "
+        "() => [...document.querySelectorAll('#drawn .measured tbody tr')].some((row) => "
         "row.cells[0].textContent === 'squad' && Number(row.cells[1].textContent) > 5)"
     )
 

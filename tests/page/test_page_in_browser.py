@@ -157,7 +157,7 @@ def test_the_player_plays_pauses_and_obeys_the_keys(page: Opened) -> None:
     time = "quatspline.player.pose().time"
     page.page.focus("#player input[name=time]")
     page.page.keyboard.press("Space")
-    page.page.wait_for_function(f"{time} > 0.05")
+    page.page.wait_for_function(f"() => {time} > 0.05")
     page.page.keyboard.press("Space")
     stopped = page(time)
     page.page.wait_for_timeout(120)
@@ -205,7 +205,7 @@ def test_less_motion_goes_from_keyframe_to_keyframe(opened: Any) -> None:
     page.page.select_option("#player select[name=speed]", "0.25")  # keyframes stand for long
     page.page.click("#player button[name=play]")
     for k in (1, 2):
-        page.page.wait_for_function(f"quatspline.player.pose().keyframe === {k}")
+        page.page.wait_for_function(f"() => quatspline.player.pose().keyframe === {k}")
 
 
 def test_tables_sort_filter_and_download(page: Opened, page_folder: Path, tmp_path: Path) -> None:

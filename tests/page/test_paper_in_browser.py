@@ -88,7 +88,7 @@ def test_the_contents_mark_what_is_being_read(opened: Any) -> None:
     for key in ("accuracy", "claims"):
         page(f"document.getElementById('{key}').scrollIntoView({{behavior: 'instant'}})")
         page.page.wait_for_function(
-            f"document.querySelector('.contents [aria-current]').getAttribute('href') === '#{key}'"
+            f"() => document.querySelector('.contents [aria-current]').getAttribute('href') === '#{key}'"
         )
 
 

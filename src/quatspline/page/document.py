@@ -20,6 +20,7 @@ from quatspline.page.chooser import chooser
 from quatspline.page.folder import Folder
 from quatspline.page.glossary import column
 from quatspline.page.motion import Scene, player_data
+from quatspline.page.policy import policy
 from quatspline.page.reference import Beside, place, quick
 from quatspline.page.sections import Section
 from quatspline.page.table1 import side_by_side
@@ -71,6 +72,7 @@ def document(
     have = {kind for kind, some in (("scenes", motions), ("replays", folder.replays)) if some}
     told = findings(folder.frame) if said is None else said
     shown = [_filled(section, folder, have, told) for section in _sections(folder, parts)]
+    scripts = list(_scripts())
     context = {
         "title": title,
         "version": __version__,
@@ -83,10 +85,8 @@ def document(
         "beside": Beside(folder),
         "data": list(_data(folder, motions)),
         "style": Markup((ASSETS / "page.css").read_text(encoding="utf-8")),
-        "plotly": Markup(_plotly()),
-        "scripts": [
-            Markup((ASSETS / f"{name}.js").read_text(encoding="utf-8")) for name in SCRIPTS
-        ],
+        "policy": Markup(policy(scripts)),
+        "scripts": list(map(Markup, scripts)),
     }
     return _environment().get_template("page.html").render(context)
 
@@ -105,10 +105,11 @@ def _environment() -> Environment:
     return environment
 
 
-def _plotly() -> str:
+def _scripts() -> Iterator[str]:
     from plotly.offline import get_plotlyjs
 
-    return str(get_plotlyjs())
+    yield str(get_plotlyjs())
+    yield from ((ASSETS / f"{name}.js").read_text(encoding="utf-8") for name in SCRIPTS)
 
 
 # -- sections -----------------------------------------------------------------------------------
