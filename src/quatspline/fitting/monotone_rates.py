@@ -106,5 +106,7 @@ def monotone(v, a, s0, s1, h0, h1, strict, slack):
     v, a = bounded(v, a, l0, l1, h0, h1, slack)
     if strict:
         for _ in range(WITHIN):
-            a = clipped(a, v, n, p, l0, l1, h0, h1, slack)
+            given, a = a, clipped(a, v, n, p, l0, l1, h0, h1, slack)
+            if (a - given) @ (a - given) == 0.0:
+                break
     return v, a
