@@ -7,7 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from quatspline import catalogue
+from quatspline import discovery
 
 STUCK = 120
 """Seconds after which a process counts as stuck."""
@@ -15,7 +15,7 @@ STUCK = 120
 
 def environment(*beside: Path, **more: str) -> dict[str, str]:
     """This process's environment, in which the sources under test are imported, and modules ``beside``."""
-    paths = os.pathsep.join(map(str, [catalogue.PACKAGE.parent, *beside]))
+    paths = os.pathsep.join(map(str, [discovery.PACKAGE.parent, *beside]))
     return {**os.environ, "PYTHONPATH": paths, **more}
 
 

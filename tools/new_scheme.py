@@ -8,7 +8,8 @@ import re
 import sys
 from pathlib import Path
 
-from quatspline.catalogue import PACKAGE, found, shipped
+from quatspline.catalogue import found
+from quatspline.discovery import PACKAGE, shipped
 
 TEMPLATE, COMPILED = "_template.py", "_template_compiled.py"
 NAME = re.compile(r"[a-z][a-z0-9]*([_-][a-z0-9]+)*", re.IGNORECASE)

@@ -145,7 +145,7 @@ def _tried(plugin: Plugin) -> str | None:
 
 
 def _started(arguments: Sequence[str]) -> subprocess.Popen[bytes]:
-    code = "from quatspline import admission, catalogue; admission.main(catalogue.loaded)"
+    code = "from quatspline import admission, discovery; admission.main(discovery.loaded)"
     paths = {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     process = subprocess.Popen(
         [sys.executable, "-c", code, *arguments],

@@ -1,64 +1,34 @@
-"""Finds schemes: one file, one scheme, the key being the file's stem with hyphens.
+"""Schemes by name: one file, one scheme, the key being the file's stem with hyphens.
 
 Looked through, in order: the package's own ``proposed``, ``baselines`` (beside ``src`` in a checkout,
 inside the package when installed), the folders named by ``QUATSPLINE_BASELINES`` (a path list), and the
-entry points of the group ``quatspline.schemes``.  What does not come with the package is a plug-in, and admitted
-first (see `admission`).
+entry points of the group ``quatspline.schemes`` (see `discovery`).
 """
 
 from __future__ import annotations
 
 import copyreg
-import importlib
-import importlib.metadata
 import os
-from collections.abc import Iterator, Mapping
-from contextlib import suppress
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from quatspline import admission
 from quatspline.curve import Curve
+from quatspline.discovery import PROPOSED, Found, discover, shipped
 from quatspline.options import nearest
 from quatspline.peers import installed
 from quatspline.system.forking import undivided
-from quatspline.system.loading import load, passing, unfinished
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from quatspline.keyframes import Keyframes
 
-PACKAGE = Path(__file__).parent
-ENTRY_POINTS = "quatspline.schemes"
 FOLDERS = "QUATSPLINE_BASELINES"
-SHIPPED = "_shipped.txt"
-"""The stems of the baselines that come with the package."""
 PAPERS = "quartic"
 """The curve of the paper that this project began with: of its proposed schemes the one that is not its own."""
-
-
-@dataclass(frozen=True)
-class Found:
-    """A scheme's class, or the reason why it cannot be used."""
-
-    name: str
-    origin: str
-    scheme: type[Curve] | None
-    problem: str | None = None
-    settled: bool = True
-    """False where the problem is an import under way, after which it may be gone."""
-    shipped: bool = False
-    """Whether it comes with the package."""
-
-
-def shipped(folder: str) -> Path:
-    """A folder that a checkout keeps beside ``src`` and a wheel carries inside the package."""
-    inside = PACKAGE / folder
-    return inside if inside.is_dir() else PACKAGE.parents[1] / folder
 
 
 def folders() -> list[Path]:
@@ -69,7 +39,7 @@ def folders() -> list[Path]:
 @cache
 def _folders(extra: str) -> tuple[Path, ...]:
     given = (Path(p) for p in extra.split(os.pathsep) if p)
-    return (PACKAGE / "proposed", shipped("baselines"), *given)
+    return (PROPOSED, shipped("baselines"), *given)
 
 
 _left_out: dict[str, str] = {}
@@ -118,9 +88,11 @@ def _find(places: tuple[Path, ...]) -> dict[str, Found]:
     files = [path for folder in places for path in sorted(folder.glob("[!_]*.py"))]
     once = {path.resolve(): path for path in reversed(files)}  # the first folder that has it
     everything: dict[str, Found] = {}
-    for item in _discover(tuple(reversed(once.values()))):
+    for item in discover(tuple(reversed(once.values()))):
         other = everything.get(item.name)
         everything[item.name] = item if other is None else _twice(other, item)
+        if item.scheme is not None:
+            copyreg.pickle(item.scheme, _by_name)
     return dict(sorted(everything.items()))
 
 
@@ -171,7 +143,7 @@ def scheme(name: str) -> type[Curve]:
 def ours(name: str) -> bool:
     """Whether a scheme is this project's own."""
     item = found().get(name)
-    return item is not None and Path(item.origin).parent == PACKAGE / "proposed" and name != PAPERS
+    return item is not None and Path(item.origin).parent == PROPOSED and name != PAPERS
 
 
 def called(name: str) -> str:
@@ -210,6 +182,11 @@ def build(
     return scheme(name)(times, quaternions, closed=closed, align=align, **options)
 
 
+def plug_ins() -> set[str]:
+    """Names of the usable schemes that do not come with the package."""
+    return {name for name, item in found().items() if item.scheme is not None and not item.shipped}
+
+
 def _by_name(curve: Curve) -> Any:
     """How a curve is pickled: by its scheme's name, for a file loaded by path is no module elsewhere."""
     return _rebuilt, (curve.name, *curve.__getstate__())
@@ -217,115 +194,3 @@ def _by_name(curve: Curve) -> Any:
 
 def _rebuilt(name: str, keyframes: Keyframes, given: dict[str, Any], hold: bool = False) -> Curve:
     return scheme(name).from_keyframes(keyframes, hold=hold, **given)
-
-
-def _discover(files: tuple[Path, ...]) -> Iterator[Found]:
-    found = importlib.metadata.entry_points(group=ENTRY_POINTS)
-    entries = sorted(found, key=lambda entry: entry.name)
-    ours = [path for path in files if _is_shipped(path)]
-    plugins: list[admission.Plugin] = [*(path for path in files if path not in ours), *entries]
-    refused = admission.refusals(plugins)
-    for path in ours:
-        yield replace(_from_file(path), shipped=True)
-    for plugin in plugins:
-        if plugin in refused:
-            settled = refused[plugin] != admission.PENDING
-            yield Found(*_named(plugin), None, refused[plugin], settled)
-        else:
-            yield _from_file(plugin) if isinstance(plugin, Path) else _from_entry(plugin)
-
-
-def plug_ins() -> set[str]:
-    """Names of the usable schemes that do not come with the package."""
-    return {name for name, item in found().items() if item.scheme is not None and not item.shipped}
-
-
-def _is_shipped(path: Path) -> bool:
-    return path.parent == PACKAGE / "proposed" or (
-        path.parent == shipped("baselines") and path.stem in _baselines()
-    )
-
-
-@cache
-def _baselines() -> frozenset[str]:
-    """Stems of the package's own files among those that a checkout's owner has put beside them."""
-    with suppress(OSError):  # then all are plug-ins
-        return frozenset((shipped("baselines") / SHIPPED).read_text(encoding="ascii").split())
-    return frozenset()
-
-
-def _named(plugin: admission.Plugin) -> tuple[str, str]:
-    """The name of a scheme, and where it comes from."""
-    if isinstance(plugin, Path):
-        return plugin.stem.replace("_", "-"), str(plugin)
-    return plugin.name, plugin.value
-
-
-def loaded(kind: str, place: str) -> type[Curve]:
-    """The class in a "file", or of the "entry" point of that name, imported as it comes."""
-    if kind == "file":
-        return _only_scheme(_module(Path(place)))
-    (entry,) = importlib.metadata.entry_points(group=ENTRY_POINTS, name=place)
-    return _loaded(entry)
-
-
-def _from_file(path: Path) -> Found:
-    name, origin = _named(path)
-    try:
-        module = _module(path)
-        if unfinished(module.__name__):
-            return Found(name, origin, None, "it is still being imported", settled=False)
-        scheme = _only_scheme(module)
-    except (Exception, SystemExit) as error:  # a broken plug-in must not take the others down
-        return _broken(name, origin, error)
-    return _usable(name, origin, scheme)
-
-
-def _module(path: Path) -> ModuleType:
-    if path.parent == PACKAGE / "proposed":
-        return importlib.import_module(f"quatspline.proposed.{path.stem}")
-    return load(path, "baseline")
-
-
-def _only_scheme(module: ModuleType) -> type[Curve]:
-    classes = [
-        value
-        for value in vars(module).values()
-        if isinstance(value, type)
-        and issubclass(value, Curve)
-        and value.__module__ == module.__name__
-        and not value.__name__.startswith("_")
-    ]
-    if len(classes) != 1:
-        raise TypeError(f"one subclass of Curve expected, {len(classes)} found")
-    return classes[0]
-
-
-def _from_entry(entry: importlib.metadata.EntryPoint) -> Found:
-    try:
-        scheme = _loaded(entry)
-    except (Exception, SystemExit) as error:
-        return _broken(*_named(entry), error)
-    return _usable(*_named(entry), scheme)
-
-
-def _loaded(entry: importlib.metadata.EntryPoint) -> type[Curve]:
-    scheme = entry.load()
-    if not (isinstance(scheme, type) and issubclass(scheme, Curve)):
-        raise TypeError(f"no subclass of Curve: {scheme!r}")
-    return scheme
-
-
-def _broken(name: str, origin: str, error: BaseException) -> Found:
-    return Found(name, origin, None, f"{type(error).__name__}: {error}", settled=not passing(error))
-
-
-def _usable(name: str, origin: str, scheme: type[Curve]) -> Found:
-    scheme.name = name
-    copyreg.pickle(scheme, _by_name)
-    if scheme.peer is not None:
-        try:
-            installed.version(scheme.peer)
-        except installed.NotInstalledError as missing:
-            return Found(name, origin, None, str(missing))
-    return Found(name, origin, scheme)

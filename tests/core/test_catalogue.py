@@ -14,7 +14,7 @@ import pytest
 
 import quatspline as qs
 from processes import environment, python
-from quatspline import catalogue
+from quatspline import catalogue, discovery
 from quatspline.curve import Curve
 from quatspline.engines import engine
 from tools import new_scheme
@@ -160,7 +160,7 @@ def test_several_folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
 
 def test_a_folder_named_twice_counts_once(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (folder / "once.py").write_text(HALF.format(name="Once"))
-    shipped = catalogue.shipped("baselines")
+    shipped = discovery.shipped("baselines")
     monkeypatch.setenv(
         catalogue.FOLDERS, os.pathsep.join([str(folder), f"{folder}/", str(shipped)])
     )
@@ -189,9 +189,9 @@ def installed(tmp_path: Path) -> Path:
     import tomllib
 
     project = tomllib.loads((EXAMPLE / "pyproject.toml").read_text())["project"]
-    group = project["entry-points"][catalogue.ENTRY_POINTS]
+    group = project["entry-points"][discovery.ENTRY_POINTS]
     lines = [f"{name} = {target}" for name, target in group.items()]
-    (info / "entry_points.txt").write_text("\n".join([f"[{catalogue.ENTRY_POINTS}]", *lines, ""]))
+    (info / "entry_points.txt").write_text("\n".join([f"[{discovery.ENTRY_POINTS}]", *lines, ""]))
     return tmp_path
 
 
@@ -323,14 +323,14 @@ def test_scaffold_passes_its_own_checks(flags: list[str], folder: Path) -> None:
 
 @pytest.mark.parametrize("template", [new_scheme.TEMPLATE, new_scheme.COMPILED])
 def test_templates_have_little_but_comments_to_replace(template: str) -> None:
-    text = (catalogue.shipped("baselines") / template).read_text(encoding="utf-8")
+    text = (discovery.shipped("baselines") / template).read_text(encoding="utf-8")
     code = [line for line in text.splitlines() if line.strip() and line.lstrip()[0] != "#"]
     assert len(code) <= 100
 
 
 def test_the_template_names_every_claim_and_hook() -> None:
     """What a scheme may set or write, it meets there."""
-    text = (catalogue.shipped("baselines") / new_scheme.TEMPLATE).read_text(encoding="utf-8")
+    text = (discovery.shipped("baselines") / new_scheme.TEMPLATE).read_text(encoding="utf-8")
     claims = set(Curve.__annotations__) - {"name", "solve_report"}  # made, not written
     hooks = {"_fit", "_orientation", "_velocity", "_acceleration", "_conclude"}
     assert not {name for name in claims | hooks if not re.search(rf"\b{name}\b", text)}
@@ -370,7 +370,7 @@ def test_scaffold_does_not_overwrite(folder: Path, capsys: pytest.CaptureFixture
 
 def test_this_projects_own_schemes_are_marked_and_the_papers_is_not() -> None:
     proposed = {
-        path.stem.replace("_", "-") for path in (catalogue.PACKAGE / "proposed").glob("[!_]*.py")
+        path.stem.replace("_", "-") for path in (discovery.PACKAGE / "proposed").glob("[!_]*.py")
     }
     marked = {name for name in catalogue.found() if catalogue.called(name) == f"{name} (ours)"}
     assert marked == proposed - {"quartic"}

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from quatspline.catalogue import PACKAGE, shipped
+from quatspline.discovery import PACKAGE, shipped
 from quatspline.engines.compiler import compiled_from
 from quatspline.kernels.jit import ROOMS
 

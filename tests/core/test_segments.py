@@ -26,7 +26,7 @@ def orders(curve: Curve, t: np.ndarray) -> list[np.ndarray]:
 @pytest.mark.parametrize("closed", [False, True])
 @pytest.mark.parametrize("a_segment", [1, 3, LONG - 1, LONG, 70, 500])
 def test_blocks_of_every_kind_agree_with_single_samples(closed: bool, a_segment: int) -> None:
-    """Few samples a segment make mixed blocks, many make long ones, both in one batch too."""
+    """Few samples per segment make mixed blocks, many make long ones, both in one batch too."""
     rng = np.random.default_rng(a_segment)
     h = rng.uniform(0.5, 2.0, 40 + closed)
     times = np.concatenate([[0.0], np.cumsum(h)])

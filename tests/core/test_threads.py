@@ -19,6 +19,7 @@ import pytest
 import quatspline as qs
 from processes import STUCK, environment, python
 from quatspline import catalogue
+from quatspline.system import loading
 from quatspline.system.quiet import quiet
 
 TRIAL = Path(__file__).parents[1] / "robustness" / "threads.py"
@@ -119,24 +120,24 @@ def test_threads_load_one_module_and_whole(tmp_path: Path, gate: SimpleNamespace
     """Experiments are loaded alike; a file's name need not be one of Python's."""
     path = tmp_path / "an.odd-name.py"
     path.write_text("import gate\ngate.entered.set()\nassert gate.go.wait(60)\nTITLE = 'whole'\n")
-    first, one = started(lambda: catalogue.load(path, "experiment"))
+    first, one = started(lambda: loading.load(path, "experiment"))
     assert gate.entered.wait(60)
-    second, two = started(lambda: catalogue.load(path, "experiment").TITLE)
+    second, two = started(lambda: loading.load(path, "experiment").TITLE)
     second.join(LATE)
     gate.go.set()
     first.join(60)
     second.join(60)
     assert two == ["whole"]
-    assert one == [catalogue.load(path, "experiment")]
+    assert one == [loading.load(path, "experiment")]
 
 
 def test_a_file_that_fails_is_tried_again_by_the_next(tmp_path: Path) -> None:
     path = tmp_path / "mended.py"
     path.write_text("raise OSError('not yet')")
     with pytest.raises(OSError, match="not yet"):
-        catalogue.load(path, "experiment")
+        loading.load(path, "experiment")
     path.write_text("VALUE = 'there, and longer'")  # another size: no bytecode of the first one
-    assert catalogue.load(path, "experiment").VALUE == "there, and longer"
+    assert loading.load(path, "experiment").VALUE == "there, and longer"
 
 
 def test_a_scheme_may_list_schemes_as_it_is_imported(folder: Path) -> None:

@@ -12,8 +12,9 @@ import pytest
 
 import quatspline as qs
 from quatspline import comparing
-from quatspline.catalogue import load, shipped
+from quatspline.discovery import shipped
 from quatspline.runs.experiment import Run
+from quatspline.system.loading import load
 from quatspline.timing import own_keyframes
 from quatspline.timing.budget import OVER, Budget, Call, Job, calls, rungs, seconds, too_many
 from quatspline.timing.own_keyframes import left_out

@@ -7,9 +7,10 @@ import pandas as pd
 import pytest
 
 from quatspline import quaternion
-from quatspline.catalogue import load, scheme, schemes, shipped
+from quatspline.catalogue import scheme, schemes
 from quatspline.claims.own import own_rates
 from quatspline.curve import Curve
+from quatspline.discovery import shipped
 from quatspline.instruments.accuracy import (
     ERRORS,
     errors,
@@ -23,6 +24,7 @@ from quatspline.instruments.continuity import jumps, measured_continuity, speeds
 from quatspline.instruments.fairness import fairness
 from quatspline.instruments.trials import builder
 from quatspline.runs.experiment import Run
+from quatspline.system.loading import load
 from quatspline.trajectories.smooth import tumble, tumble_rates
 from quatspline.trajectories.walks import walk
 from toys import AXIS, Turn, turned

@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 from scipy.interpolate import BSpline
 
-from quatspline.catalogue import load, scheme, shipped
+from quatspline.catalogue import scheme
 from quatspline.curve import Curve
+from quatspline.discovery import shipped
 from quatspline.instruments import convergence
 from quatspline.instruments.continuity import jumps
 from quatspline.runs.experiment import Run
 from quatspline.solving import SolveReport
+from quatspline.system.loading import load
 from quatspline.trajectories.walks import walk
 
 UNEVEN = np.array([0.0, 1.0, 1.3, 3.3, 4.0, 4.2, 6.0])

@@ -9,10 +9,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from quatspline.catalogue import load, scheme, shipped
+from quatspline.catalogue import scheme
 from quatspline.curve import Curve
+from quatspline.discovery import shipped
 from quatspline.runs.experiment import Run
 from quatspline.segments import LAZY
+from quatspline.system.loading import load
 from quatspline.timing import cost, speed
 from quatspline.timing.budget import Budget, Call, calls, seconds
 from quatspline.trajectories.walks import walk
@@ -100,6 +102,23 @@ def test_operations_hold_all_iterations():
     assert cost.operations(curve, "sample") == {"exps": 0, "logs": 0, "slerps": 6}
     peer = cost.operations(scheme("scipy-slerp")(None, q), "sample")
     assert all(np.isnan(count) for count in peer.values())
+
+
+@pytest.mark.parametrize(
+    ("seconds_each", "weighed"),
+    [(1e-7, 100_000), (0.9e-5, 100_000), (1.1e-5, 10_000), (4.6e-4, 1000), (1.1e-3, None)],
+)
+def test_memory_is_measured_at_the_largest_size_that_takes_a_second(seconds_each, weighed):
+    module = load(shipped("experiments") / "cost.py", "experiment")
+    allowed = module.MEMORY_SHARE * module.BUDGET
+    sizes = [
+        size
+        for size in module.SETUP
+        if module._weighed("set-up", size, seconds_each * size / allowed) == size
+    ]
+    assert sizes == ([weighed] if weighed else [])
+    assert module._weighed("set-up", 1000, np.nan) is None  # over budget
+    assert module._weighed("one sample", 1000, seconds_each) is None
 
 
 @pytest.mark.parametrize("task", ["set-up", "evaluation", "one sample"])

@@ -14,13 +14,15 @@ from scipy.optimize import minimize_scalar
 
 import quatspline as qs
 from quatspline import quaternion
-from quatspline.catalogue import load, scheme, shipped
+from quatspline.catalogue import scheme
 from quatspline.curve import Curve
+from quatspline.discovery import shipped
 from quatspline.instruments.breaks import UNBROKEN, breaks
 from quatspline.instruments.continuity import jumps, measured_continuity
 from quatspline.instruments.fairness import fairness
 from quatspline.quaternion import FloatArray, distance
 from quatspline.runs.experiment import Run
+from quatspline.system.loading import load
 from quatspline.trajectories.sets import step_sets, torque_sets
 from toys import AXIS, Turn, turned
 

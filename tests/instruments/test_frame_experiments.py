@@ -11,10 +11,10 @@ import pytest
 from scipy.interpolate import make_interp_spline
 from scipy.spatial.transform import Rotation
 
-from quatspline.catalogue import load
 from quatspline.figures import style
 from quatspline.instruments.frame_error import smooth_constant, worst_constant
 from quatspline.runs.experiment import Run, files
+from quatspline.system.loading import load
 from quatspline.timing.nearest_rotation import by_svd, measured, noisy, walked
 from quatspline.trajectories.rolling import PERIOD, rolling, rolling_matrices
 
@@ -93,6 +93,6 @@ def test_experiment(name: str) -> None:
     assert {*module.KEYS, *module.FORMATS} <= set(table)
     assert not table.duplicated(module.KEYS).any()
     if hasattr(module, "draw"):
-        with style.house():
+        with style.applied():
             assert len(module.draw(table).axes) == 3
         assert "spacing" in module.caption(table)

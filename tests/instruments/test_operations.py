@@ -7,9 +7,11 @@ from typing import Any
 import pandas as pd
 import pytest
 
-from quatspline.catalogue import load, scheme, shipped
+from quatspline.catalogue import scheme
 from quatspline.curve import Curve
+from quatspline.discovery import shipped
 from quatspline.options import among
+from quatspline.system.loading import load
 from quatspline.timing.operations import executed, per_keyframe, per_sample
 from quatspline.trajectories.paper import CASES, SOLVE
 

@@ -12,13 +12,13 @@ import pandas as pd
 import pytest
 from scipy.optimize import minimize_scalar
 
-from quatspline.catalogue import load
 from quatspline.figures import style
 from quatspline.findings.findings import FINDINGS
 from quatspline.findings.quotes import Ledger
 from quatspline.instruments.slerp_variants import largest_error, nlerp_error
 from quatspline.runs.experiment import Run, files
 from quatspline.runs.results import Results
+from quatspline.system.loading import load
 
 ROUNDING = 3e-15
 
@@ -165,7 +165,7 @@ def test_only_variants_are_measured() -> None:
 
 def test_the_figure_is_drawn_from_the_table(table: pd.DataFrame) -> None:
     module = load(files()["slerp-variants"], "experiment")
-    with style.house():
+    with style.applied():
         figure = module.draw(table)
     assert [len(ax.lines) for ax in figure.axes] == [3, 3, 2]
     assert set(module.FORMATS) <= set(table.columns)

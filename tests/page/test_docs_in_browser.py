@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from pages import needed
-from quatspline.catalogue import PACKAGE
+from quatspline.discovery import PACKAGE
 
 pytestmark = pytest.mark.browser
 

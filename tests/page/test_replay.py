@@ -15,7 +15,6 @@ import pytest
 import quatspline as qs
 from pages import EVERY, REBUILT, Elements, loop
 from quatspline import quaternion
-from quatspline.catalogue import load
 from quatspline.cli import running
 from quatspline.motion import Motion
 from quatspline.motion.keeping import left_out, moving
@@ -23,6 +22,7 @@ from quatspline.motion.replay import BUDGET, PARTS, WIRES, replay, wires
 from quatspline.page import write_page
 from quatspline.runs.experiment import Run, files
 from quatspline.runs.results import Results
+from quatspline.system.loading import load
 from quatspline.trajectories.credits import credit
 from quatspline.trajectories.figure_walk import figure_walk
 

@@ -11,11 +11,13 @@ import pytest
 
 from desk import Desk
 from quatspline import quaternion
-from quatspline.catalogue import found, load, scheme, schemes, shipped
+from quatspline.catalogue import found, scheme, schemes
+from quatspline.discovery import shipped
 from quatspline.figures import motions
 from quatspline.findings.findings import findings, reader
 from quatspline.instruments.blending import blending
 from quatspline.runs.experiment import Run, crossed, files
+from quatspline.system.loading import load
 from quatspline.timing.interleaved import interleaved
 from quatspline.timing.protocols import PROTOCOLS, frames
 from quatspline.trajectories.paper import CASES, KEY, SOLVE, TEAPOT

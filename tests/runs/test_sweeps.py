@@ -22,7 +22,7 @@ from quatspline.runs import experiment, staff, sweeps
 from quatspline.runs.experiment import Run
 from quatspline.runs.results import Results
 from quatspline.runs.sweeps import Kept
-from quatspline.system import limits
+from quatspline.system import limits, loading
 
 COUNT = 8
 SWEEP = """
@@ -125,7 +125,7 @@ def test_rows_do_not_depend_on_the_number_of_workers(bench: Bench) -> None:
 def test_rows_keep_every_bit_and_the_order_of_the_cells(bench: Bench) -> None:
     bench.experiment()
     results, run = Results(bench.out), Run(quick=True, seed=3)
-    module = catalogue.load(bench.folder / "swept.py", "experiment")
+    module = loading.load(bench.folder / "swept.py", "experiment")
     with staff.workers(2):
         table = sweeps.sweep("swept", module, run, Kept(results, "swept", "print"))
     again = sweeps.sweep("swept", module, run, Kept(results, "swept", "print"))

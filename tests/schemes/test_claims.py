@@ -210,7 +210,7 @@ def test_claims_are_of_their_kind(scheme: Scheme) -> None:
 
 
 def test_reference_is_in_the_bibliography(scheme: Scheme) -> None:
-    from quatspline.catalogue import shipped
+    from quatspline.discovery import shipped
 
     entries = (shipped("references.bib").parent / "references.bib").read_text(encoding="utf-8")
     assert f"{{{scheme.reference}," in entries

@@ -24,7 +24,7 @@ from quatspline.system.ending import Ended, ending
 from quatspline.system.stdout import STDOUT, reserved, say
 
 if TYPE_CHECKING:
-    from quatspline.catalogue import Found
+    from quatspline.discovery import Found
 
 DONE, FAILED, INTERRUPTED = 0, 1, 130
 

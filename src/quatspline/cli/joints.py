@@ -160,7 +160,7 @@ def _drawn(results: Results, table: pd.DataFrame, joints: pd.DataFrame) -> None:
     if joints.empty:
         return
     mpl.use("Agg")  # nothing here may open a window
-    with style.house():
+    with style.applied():
         results.figure(NAME, kept.spans(table))
         results.figure(JOINTS, kept.by_joint(joints, chosen(table, "rms_median")[:DRAWN]))
     results.text(f"{NAME}.caption.txt", SPANS)

@@ -1,4 +1,4 @@
-"""One line a table: what a run ends with."""
+"""One line per table: what a run ends with."""
 
 from __future__ import annotations
 
@@ -32,8 +32,10 @@ def _first(read: Reader) -> dict[str, str]:
 
 def _holds(table: pd.DataFrame) -> str:
     rows = f"{len(table)} row{'' if len(table) == 1 else 's'}"
+    failed = int(table["failure"].notna().sum()) if "failure" in table else 0
+    if failed:
+        rows += f" ({failed} not measured)"
     if "scheme" in table:
         count = table["scheme"].nunique()
         rows += f", {count} scheme{'' if count == 1 else 's'}"
-    failed = int(table["failure"].notna().sum()) if "failure" in table else 0
-    return f"{rows}, {failed} of them not measured." if failed else f"{rows}."
+    return f"{rows}."

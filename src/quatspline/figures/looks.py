@@ -85,12 +85,6 @@ FAMILIES = (
 OTHER = "#7a4a2b"
 """The colour of schemes that no family names."""
 
-LEADING = (
-    *("quartic", "quintic", "local-quintic", "monotone-quintic"),
-    *("nielson", "kim", "squad", "slerp"),
-)
-"""Schemes that a plot of many shows in colour at first, the others in grey."""
-
 
 @cache
 def _curated() -> dict[str, dict[str, Any]]:

@@ -147,4 +147,4 @@ def _levels(rows: pd.DataFrame, level: int) -> Iterator[pd.DataFrame]:
 
 
 CANDIDATES = candidates(Needs())
-"""Those of somebody who asks for nothing."""
+"""Those of a user who asks for nothing."""

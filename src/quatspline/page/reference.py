@@ -9,7 +9,7 @@ from typing import Any
 
 import pandas as pd
 
-from quatspline.catalogue import shipped
+from quatspline.discovery import shipped
 from quatspline.findings.findings import reader
 from quatspline.findings.quotes import Cell, Quote
 from quatspline.page.folder import Folder
@@ -59,6 +59,8 @@ class Beside:
     def __call__(self, quote: Quote) -> str:
         """The reference's text of a number that is another there; empty where it is the same or unknown."""
         if self._read is None or not {cell.table for cell in quote.cells} & self._quick:
+            return ""
+        if isinstance(quote.value, str):  # a name, or the run's own size
             return ""
         try:
             other = str(replace(quote, cells=self._cells(quote.cells)))

@@ -94,8 +94,8 @@ class SmoothingSpline(SegmentCurve):
             own = keyframes.track(k)
             problem = Smoothing(own.quaternions, own.spacings / own.unit, own.closed, own.sign, w)
             if isinstance(smoothing, str):
-                search = Search(problem, max_iterations)
-                weight, start = search.least(*_criteria(smoothing, noise, own))
+                criteria = _criteria(smoothing, noise, own)
+                weight, start = Search(problem, max_iterations).least(*criteria)
                 found = problem.solve(weight, tolerance, max_iterations, start)
             else:
                 weight = float(smoothing) / own.unit**3

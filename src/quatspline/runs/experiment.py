@@ -32,10 +32,11 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 
-from quatspline import catalogue
+from quatspline import catalogue, discovery
 from quatspline.instruments.trials import reason
 from quatspline.options import nearest
 from quatspline.runs.provenance import cpu_model, versions
+from quatspline.system.loading import load
 from quatspline.trajectories import clips
 
 if TYPE_CHECKING:
@@ -147,7 +148,7 @@ def files() -> dict[str, Path]:
     """The files of all experiments by name."""
     extra = [Path(p) for p in os.environ.get(FOLDERS, "").split(os.pathsep) if p]
     named: dict[str, Path] = {}
-    for folder in (catalogue.shipped("experiments"), *extra):
+    for folder in (discovery.shipped("experiments"), *extra):
         for path in sorted(folder.glob("[!_]*.py")):
             name = path.stem.replace("_", "-")
             if name in named:
@@ -169,7 +170,7 @@ def experiments(names: Sequence[str] = ()) -> list[Experiment]:
         if name not in known:
             raise ValueError(f"unknown experiment {name!r}: {nearest(name, known)}")
     if not known:
-        raise ValueError(f"no experiments in {catalogue.shipped('experiments')} or ${FOLDERS}")
+        raise ValueError(f"no experiments in {discovery.shipped('experiments')} or ${FOLDERS}")
     if names:
         asked = [_loaded(name, known[name]) for name in dict.fromkeys(names)]
         return sorted(asked, key=lambda e: e.derived)
@@ -179,7 +180,7 @@ def experiments(names: Sequence[str] = ()) -> list[Experiment]:
 
 def _loaded(name: str, path: Path) -> Experiment:
     try:
-        return Experiment(name, catalogue.load(path, "experiment"))
+        return Experiment(name, load(path, "experiment"))
     except Exception as error:  # told when its turn comes, and the others run
         return Experiment(name, None, error)
 
@@ -194,7 +195,7 @@ def fingerprint(runs: dict[str, Run]) -> str:
 def sources() -> str:
     """A hash of the package's own files, of all schemes, of all experiments and of the clips they run on."""
     others = {"__pycache__", "node_modules"}
-    paths = {path for path in catalogue.PACKAGE.rglob("*") if others.isdisjoint(path.parts)}
+    paths = {path for path in discovery.PACKAGE.rglob("*") if others.isdisjoint(path.parts)}
     paths |= {path for folder in catalogue.folders() for path in folder.glob("*.py")}
     folders = {path.parent for path in files().values()}  # experiments may share private modules
     paths |= {path for folder in folders for path in folder.glob("*.py")}

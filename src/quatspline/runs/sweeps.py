@@ -35,6 +35,7 @@ from quatspline.runs import experiment
 from quatspline.runs.experiment import Run
 from quatspline.runs.journal import Cell, Kept, key
 from quatspline.runs.staff import Done, Staff, staff
+from quatspline.system.loading import load
 from quatspline.trajectories import clips
 
 if TYPE_CHECKING:
@@ -190,7 +191,7 @@ def _lacking(usable: Sequence[str], run: Run, cell: Cell) -> str | None:
 def _measured(place: int, name: str, run: Run, cell: Cell) -> Done:
     """Measure a cell of an experiment that is found by its name (modules do not travel)."""
     try:
-        module = catalogue.load(experiment.files()[name], "experiment")
+        module = load(experiment.files()[name], "experiment")
         with always_compiled():  # in a worker, too
             rows = module.measure_cell(run, **cell)
         listed = [rows] if isinstance(rows, dict) else list(rows)
