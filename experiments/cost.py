@@ -75,13 +75,13 @@ def measure_cell(run: Run, task: str, size: int) -> list[dict[str, Any]]:
         row["run_size"] = run.size
         row |= {"failure": cost.failure, **_counts(task, name)}
         row |= {"seconds_median": cost.seconds, "seconds_iqr": cost.iqr}
-        if not run.quick and size == _weighed(task, size, cost.seconds / (MEMORY_SHARE * BUDGET)):
+        if not run.quick and size == weighed(task, size, cost.seconds / (MEMORY_SHARE * BUDGET)):
             row["times_memory"] = peak_bytes(tasks[name].prepare(size)) / (BYTES * size)
         rows.append(row)
     return rows
 
 
-def _weighed(task: str, size: int, share: float) -> int | None:
+def weighed(task: str, size: int, share: float) -> int | None:
     """The size at which memory is measured, where a call of some size takes a share of what is allowed it.
 
     The largest of `MEMORY` that is expected to stay below it, were the time proportional to the size.

@@ -65,6 +65,10 @@ def test_no_legend_lies_over_what_follows(paper: Opened) -> None:
         )
     assert paper("document.querySelectorAll('.plot .legend').length") > 3
     assert paper(LEGENDS) == 0
+    heights = paper("[...document.querySelectorAll('.plot .chart')].map((c) => c.layout?.height)")
+    assert set(heights) - {None} == {
+        410
+    }  # not the screen's, at which the browser tells that it will print
 
 
 def test_figures_are_on_the_paper(opened: Any) -> None:

@@ -3,7 +3,7 @@
 quatspline.plots = (() => {
   const { element: make, data, theme } = quatspline;
   const looks = data.read("looks") || {};
-  const PAPER = 680; /* pixels across A4 between margins */
+  const PAPER = { width: 680, height: 410 }; /* pixels: across A4 between margins, and the height that the style gives a plot there */
   const printed = new Set();
   let printing = false;
 
@@ -32,7 +32,7 @@ quatspline.plots = (() => {
     return {
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", hovermode: "closest",
       font: { family: "system-ui, sans-serif", size: narrow ? 12 : 14, color: theme.color("text") },
-      margin: { l: 60, r: 20, t: 16, b: 50 }, ...(printing ? { width: PAPER } : { width: undefined, autosize: true }),
+      margin: { l: 60, r: 20, t: 16, b: 50 }, ...(printing ? PAPER : { width: undefined, height: undefined, autosize: true }),
       hoverlabel: { bgcolor: theme.color("raised"), bordercolor: theme.color("line"), font: { color: theme.color("text") } },
       legend: { ...legend, font: { size: 12 }, itemclick: "toggle", itemdoubleclick: "toggleothers" },
       ...more,
