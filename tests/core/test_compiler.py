@@ -50,4 +50,12 @@ def test_a_scheme_takes_polynomials_and_families_with_it() -> None:
 
 def test_the_driver_takes_what_it_inlines_with_it() -> None:
     stems = {path.stem for path in compiled_from(PACKAGE / "engines" / "driver.py")}
-    assert {"locating", "intrinsics", "compiler", "values"} <= stems
+    assert {
+        "locating",
+        "sweeping",
+        "blocks",
+        "transposing",
+        "intrinsics",
+        "compiler",
+        "values",
+    } <= stems

@@ -11,6 +11,7 @@ import quatspline as qs
 from quatspline.curve import Curve
 from quatspline.engines.driver import BATCH
 from quatspline.engines.locating import LONG
+from quatspline.kernels.jit import BLOCK
 from quatspline.segments import CHUNK, LAZY, SegmentCurve
 from walks import apart, applies, walk
 
@@ -39,6 +40,36 @@ def test_blocks_of_every_kind_agree_with_single_samples(closed: bool, a_segment:
             alone = np.array([curve(float(x), order) for x in samples[:: max(1, t.size // 300)]])
             together = curve(samples, order)[:: max(1, t.size // 300)]
             np.testing.assert_array_equal(together, alone)
+
+
+@pytest.mark.parametrize("name", ["slerp", "quartic"])
+def test_strays_in_long_runs_are_samples_as_any(name: str) -> None:
+    """Dense sorted times with leaps to other segments, back and over several, at every place of a block."""
+    curve = qs.build(name, None, walk(30, 50.0, seed=2))
+    rng = np.random.default_rng(5)
+    t = np.linspace(3.2, 27.9, 4 * BATCH)
+    strays = np.cumsum(rng.integers(1, 3 * BLOCK, t.size // BLOCK))
+    strays = strays[strays < t.size]
+    t[strays] = rng.uniform(0.0, 29.0, strays.size)
+    t[BATCH : BATCH + 5 * BLOCK] -= 2.0
+    for order in (0, 1, 2):
+        alone = np.array([curve(float(x), order) for x in t])
+        np.testing.assert_array_equal(curve(t, order), alone)
+
+
+def test_nothing_is_written_beside_the_result() -> None:
+    """Results are stored by whole vectors, wherever in memory they begin and however many there are."""
+    curve = qs.build("slerp", None, walk(30, 50.0, seed=2))
+    for order, width in ((0, 4), (1, 3)):
+        for count in (1, LONG - 1, LONG, LONG + 5, BLOCK, BLOCK + 3, 333):
+            for start in range(1, 9):
+                memory = np.full(start + width * count + 16, 7.25)
+                out = memory[start : start + width * count].reshape(count, width)
+                t = np.linspace(3.0, 7.5, count)
+                curve(t, order, out=out)
+                np.testing.assert_array_equal(out[::7], [curve(float(x), order) for x in t[::7]])
+                beside = np.delete(memory, slice(start, start + width * count))
+                assert (beside == 7.25).all()
 
 
 def test_the_end_of_a_batch_may_fall_anywhere() -> None:

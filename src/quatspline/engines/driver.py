@@ -1,6 +1,7 @@
 """The compiled driver of all segment curves: times in, blocks of samples to a kernel, results out.
 
-A batch of samples is located first: the local parameter u and the segment of each, and the blocks
+Dense samples in order, of one track, are swept (`sweeping`).  Of others
+a batch is located first: the local parameter u and the segment of each, and the blocks
 that it falls into.  Neighbouring samples of one segment form a block that needs that segment's
 constants once (sorted samples); where segments change every few samples, a mixed block gathers
 constants sample by sample.  Then every track evaluates all blocks of the batch.
@@ -13,23 +14,21 @@ import math
 import numpy as np
 from numba import carray
 
+from quatspline.engines.blocks import gather, spread, store, store_apart
 from quatspline.engines.compiler import machine
-from quatspline.engines.intrinsics import at_address, call_fit, call_sample, on_stack, splat
-from quatspline.engines.locating import INSIDE, LONG, MIXED, locate
+from quatspline.engines.intrinsics import at_address, call_fit, call_sample, on_stack
+from quatspline.engines.locating import INSIDE, LONG, MIXED, beginning, locate
+from quatspline.engines.sweeping import sweep
 from quatspline.inputs.arrays import FloatArray, IntArray
 from quatspline.kernels.jit import (
     BLOCK,
-    CONSTANTS,
     LANES,
     OVERWRITTEN,
     REACH,
-    RESULT,
     ROWS,
     UNREPORTED,
     compiled,
-    inlined,
 )
-from quatspline.kernels.values import put_quat, put_vec, quat_at, vec_at
 
 BATCH = 1024
 """Samples located at once, before their tracks are evaluated: within the first-level cache."""
@@ -123,8 +122,25 @@ def sample(address, order, curve, origin, slack, t, out):
     spans = carray(on_stack(BLOCKS), (BLOCKS,)).view(np.uint16)  # first sample, number of samples
     owner = carray(on_stack(BLOCKS), (BLOCKS,)).view(np.int64)  # the segment of a block
     segment, step = 0, max(min(BATCH, BATCH * SHARE // tracks), BLOCK)
-    for start in range(0, t.size, step):
-        batch = t[start : start + step]
+    start, room = 0, step
+    if tracks == 1 and t.size >= LONG:
+        segment = beginning(knots, t[0] - origin)
+    while start < t.size:
+        if tracks == 1 and t.size - start >= LONG:
+            swept, segment = sweep(
+                address,
+                order,
+                knots,
+                segments[0],
+                origin,
+                t[start:],
+                out[width * start :],
+                segment,
+                pointer,
+            )
+            start += swept
+            room = min(2 * room, step) if swept == 0 else BLOCK
+        batch = t[start : start + room]
         made, segment, wraps, bad = locate(
             knots, closed, origin, slack, batch, segment, u, where, spans, owner
         )
@@ -138,75 +154,19 @@ def sample(address, order, curve, origin, slack, t, out):
                 for j in range(n):
                     sheet[0, j] = u[first + j]
                 if i == MIXED:
-                    _gather(pointer, knots, segments[k], where, first, n)
+                    gather(pointer, knots, segments[k], where, first, n)
                 elif i != filled:
-                    _spread(pointer, knots, segments[k], i, BLOCK if t.size > 1 else LANES)
+                    spread(pointer, knots, segments[k], i, BLOCK if t.size > 1 else LANES)
                 filled = i
                 call_sample(address, pointer, n)
-                _store(sheet, order, own, first, n, tracks)
+                if tracks == 1:
+                    store(pointer, sheet, order, own, first, n)
+                else:
+                    store_apart(sheet, order, own, first, n, tracks)
             if order == 0 and wraps and signs[k] < 0.0:
                 _flip(batch, origin, knots[-1], own, tracks)
+        start += batch.size
     return INSIDE
-
-
-@inlined
-def _spread(sheet, knots, segments, i, width):
-    """The constants of segment i for all samples of a block."""
-    rate = 1.0 / (knots[i + 1] - knots[i])
-    for j in range(0, width, LANES):
-        splat(sheet, BLOCK + j, rate)
-    for c in range(segments.shape[1]):
-        value = segments[i, c]
-        for j in range(0, width, LANES):
-            splat(sheet, BLOCK * (CONSTANTS + c) + j, value)
-
-
-@inlined
-def _gather(sheet, knots, segments, where, first, n):
-    """The constants of each sample's own segment, those of neighbours in one segment together.
-
-    Vectors reach beyond a run, where the next run overwrites them; a mixed block leaves room for the last.
-    """
-    start = 0
-    while start < n:
-        i = where[first + start]
-        stop = start + 1
-        while stop < n and where[first + stop] == i:
-            stop += 1
-        rate = 1.0 / (knots[i + 1] - knots[i])
-        if stop - start <= LANES:  # one vector each: a loop of one turn costs more than the store
-            splat(sheet, BLOCK + start, rate)
-            for c in range(segments.shape[1]):
-                splat(sheet, BLOCK * (CONSTANTS + c) + start, segments[i, c])
-        else:
-            for j in range(start, stop, LANES):
-                splat(sheet, BLOCK + j, rate)
-            for c in range(segments.shape[1]):
-                value = segments[i, c]
-                for j in range(start, stop, LANES):
-                    splat(sheet, BLOCK * (CONSTANTS + c) + j, value)
-        start = stop
-
-
-@inlined
-def _store(sheet, order, out, first, n, tracks):
-    """The result rows, component first, into out, sample first."""
-    if order == 0 and tracks == 1:  # a constant stride, and no value between: the stores vectorise
-        for j in range(n):
-            at = 4 * (first + j)
-            out[at] = sheet[RESULT, j]
-            out[at + 1] = sheet[RESULT + 1, j]
-            out[at + 2] = sheet[RESULT + 2, j]
-            out[at + 3] = sheet[RESULT + 3, j]
-    elif order == 0:
-        for j in range(n):
-            put_quat(out, 4 * tracks * (first + j), quat_at(sheet[RESULT:, j], 0))
-    elif tracks == 1:
-        for j in range(n):
-            put_vec(out, 3 * (first + j), vec_at(sheet[RESULT:, j], 0))
-    else:
-        for j in range(n):
-            put_vec(out, 3 * tracks * (first + j), vec_at(sheet[RESULT:, j], 0))
 
 
 @compiled

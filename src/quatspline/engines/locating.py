@@ -62,6 +62,12 @@ def locate(knots, closed, origin, slack, t, segment, u, where, spans, owner):
     return made, segment, wraps, INSIDE
 
 
+@inlined
+def beginning(knots, x):
+    """The segment of a time, the first one where it lies in none."""
+    return _find(knots, x, 0) if x >= 0.0 and x < knots[-1] else 0
+
+
 @compiled
 def _one_by_one(knots, closed, origin, slack, t, segment, u, where):
     """Local parameters and segments of samples of any order and place; see `_locate`."""
