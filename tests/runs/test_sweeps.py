@@ -6,6 +6,7 @@ import json
 import os
 import re
 import subprocess
+import sys
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -18,7 +19,7 @@ import pytest
 from processes import command, environment
 from quatspline import catalogue
 from quatspline.cli import running
-from quatspline.runs import experiment, staff, sweeps
+from quatspline.runs import cluster, experiment, staff, sweeps
 from quatspline.runs.experiment import Run
 from quatspline.runs.results import Results
 from quatspline.runs.sweeps import Kept
@@ -362,28 +363,28 @@ def test_cells_that_cannot_be_told_apart_are_refused(bench: Bench) -> None:
 # -- Dask ---------------------------------------------------------------------------------------
 
 
-@pytest.fixture(scope="module")
-def cluster() -> Iterator:
+@pytest.fixture(name="local", scope="module")
+def local_cluster() -> Iterator:
     distributed = pytest.importorskip("distributed")
     with distributed.LocalCluster(2, threads_per_worker=1, dashboard_address=":0") as local:
         yield local
 
 
-def test_a_dask_cluster_gives_the_same_bytes(bench: Bench, cluster) -> None:
+def test_a_dask_cluster_gives_the_same_bytes(bench: Bench, local) -> None:
     bench.experiment()
     assert bench.run(jobs=2) == []
     table = bench.table()
     (bench.folder / "measured").unlink()
-    assert bench.run(dask=cluster.scheduler_address) == []
+    assert bench.run(dask=local.scheduler_address) == []
     assert bench.table() == table
     assert bench.measured() == dict.fromkeys(range(COUNT), 1)
-    own = {worker.pid for worker in cluster.workers.values()}
+    own = {worker.pid for worker in local.workers.values()}
     assert bench.workers() <= own
 
 
-def test_a_killed_dask_worker_loses_nothing(bench: Bench, cluster) -> None:
+def test_a_killed_dask_worker_loses_nothing(bench: Bench, local) -> None:
     bench.experiment(STOP.format(how="os.kill(os.getpid(), signal.SIGKILL)"))
-    assert bench.run(dask=cluster.scheduler_address) == []
+    assert bench.run(dask=local.scheduler_address) == []
     assert len(pd.read_csv(bench.out / "swept.csv")) == 4 * COUNT
     assert bench.measured()[3] == 2
 
@@ -427,14 +428,49 @@ def test_a_malformed_address_is_told_and_leaves_nothing_open(
     assert f"--dask {address}: no Dask scheduler answers: {what}" in said
 
 
+def test_a_cell_that_kills_every_dask_worker_is_told_and_the_others_are_kept(bench: Bench) -> None:
+    distributed = pytest.importorskip("distributed")
+    bench.experiment("if x == 3: os.kill(os.getpid(), signal.SIGKILL)")
+    with (
+        distributed.LocalCluster(1, threads_per_worker=1, dashboard_address=":0") as own,
+        bench.popen("--dask", own.scheduler_address) as process,
+    ):
+        said = process.communicate()[1]
+    assert process.returncode == 1
+    assert "the Dask workers that were to measure it died" in said
+    assert "Traceback" not in said
+    bench.experiment()
+    assert bench.run(jobs=1) == []
+
+
+def test_a_cluster_whose_last_worker_leaves_is_told(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without a nanny nobody starts another: cells that are left are given up, status 1."""
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setattr(cluster, "LOOK", 0.2)
+    monkeypatch.setattr(cluster, "ALONE", 1.0)
+    bench.experiment("if x == 3: os.kill(os.getpid(), signal.SIGKILL)")
+    with distributed.LocalCluster(0, dashboard_address=":0") as own:
+        line = [sys.executable, "-m", "distributed.cli.dask_worker", own.scheduler_address]
+        with subprocess.Popen([*line, "--no-nanny", "--nthreads", "1"], stderr=subprocess.DEVNULL):
+            assert bench.run(dask=own.scheduler_address) == ["swept"]
+    assert cluster.NO_WORKER in (bench.out / "swept.error.txt").read_text(encoding="utf-8")
+
+
+def test_limits_of_a_cluster_keep_what_is_promised() -> None:
+    assert cluster.ANSWER <= 5.0
+    assert cluster.ALONE + 2.0 * cluster.LOOK + cluster.ANSWER <= 30.0
+
+
 def test_without_a_scheduler_or_the_extra_nothing_starts(
     bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     bench.experiment()
-    monkeypatch.setattr(staff, "PATIENCE", 0.2)
+    monkeypatch.setattr(cluster, "ANSWER", 0.2)
     with pytest.raises(ValueError, match=r"--dask tcp://127.0.0.1:9: no Dask scheduler answers"):
         bench.run(dask="tcp://127.0.0.1:9")
-    monkeypatch.setattr(staff.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(cluster.importlib.util, "find_spec", lambda name: None)
     with pytest.raises(ValueError, match=r"pip install 'quatspline\[dask\]'"):
         bench.run(dask="tcp://127.0.0.1:9")
     assert not bench.out.exists()

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import importlib.util
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import Any, NamedTuple
 
+from quatspline.runs import cluster
 from quatspline.system.crew import Crew
 from quatspline.system.ending import hang_up_ignored
 from quatspline.system.limits import CELL_SECONDS, memory, seconds
-
-PATIENCE = 10.0
-"""Seconds to wait for a Dask scheduler, and for its first worker."""
 
 ONE_THREAD = {
     f"{library}_NUM_THREADS": "1"
@@ -38,9 +35,9 @@ class Done(NamedTuple):
 class Staff:
     """What measures: ``jobs`` processes, and the cluster where there is one."""
 
-    def __init__(self, jobs: int, cluster: bool = False) -> None:
+    def __init__(self, jobs: int, client: Any = None) -> None:
         limits = seconds(CELL_SECONDS), memory()
-        self.cluster = cluster
+        self.client = client
         self.crew = Crew(jobs, *limits, ONE_THREAD)
         self.timing = Crew(1, *limits)  # in the environment of the command
 
@@ -48,8 +45,8 @@ class Staff:
         self, measure: Callable[..., Done], tasks: Sequence[tuple[Any, ...]], serial: bool
     ) -> Iterator[Done]:
         """``measure(*task)`` for tasks that begin with their place, as they finish."""
-        if self.cluster and not serial:
-            yield from _on_cluster(measure, tasks)
+        if self.client is not None and not serial:
+            yield from _on_cluster(self.client, measure, tasks)
             return
         crew = self.timing if serial else self.crew
         for outcome in crew.outcomes((task[0], (measure, task)) for task in tasks):
@@ -66,12 +63,11 @@ class Staff:
         self.timing.close()
 
 
-def _on_cluster(measure: Callable[..., Done], tasks: Sequence[tuple[Any, ...]]) -> Iterator[Done]:
-    from joblib import Parallel, delayed
-
-    # A cell a task: a task that dies takes no finished cell with it.
-    parallel = Parallel(return_as="generator_unordered", batch_size=1, max_nbytes=None)
-    yield from parallel(delayed(measure)(*task) for task in tasks)
+def _on_cluster(
+    client: Any, measure: Callable[..., Done], tasks: Sequence[tuple[Any, ...]]
+) -> Iterator[Done]:
+    for number, done, trouble in cluster.outcomes(client, measure, tasks):
+        yield done if trouble is None else Done(tasks[number][0], "", trouble)
 
 
 _employed: ContextVar[Staff | None] = ContextVar("_employed", default=None)
@@ -97,7 +93,7 @@ def workers(jobs: int | None = None, dask: str | None = None) -> Iterator[None]:
     ValueError
         Without the extra "dask", a scheduler at the address, or a worker of it.
     """
-    from joblib import cpu_count, parallel_config
+    from joblib import cpu_count
     from joblib.externals.loky.backend import resource_tracker
 
     with hang_up_ignored():  # it cleans up after all others, SIGINT and SIGTERM notwithstanding
@@ -106,11 +102,7 @@ def workers(jobs: int | None = None, dask: str | None = None) -> Iterator[None]:
         with _employing(Staff(jobs or cpu_count())):
             yield
         return
-    with (
-        _client(dask) as client,
-        parallel_config("dask", client=client),
-        _employing(Staff(1, cluster=True)),
-    ):
+    with cluster.connected(dask) as client, _employing(Staff(1, client)):
         yield
 
 
@@ -122,23 +114,3 @@ def _employing(employed: Staff) -> Iterator[None]:
     finally:
         _employed.reset(token)
         employed.close()
-
-
-def _client(address: str) -> AbstractContextManager[Any]:
-    if importlib.util.find_spec("distributed") is None:
-        raise ValueError("--dask needs the extra: pip install 'quatspline[dask]'")
-    import distributed
-    from distributed.comm import resolve_address
-
-    try:
-        resolve_address(address)  # a client that fails at this cannot be closed
-        client = distributed.Client(address, timeout=PATIENCE, set_as_default=False)
-    except (OSError, ValueError) as error:
-        reason = " ".join(str(error).split())
-        raise ValueError(f"--dask {address}: no Dask scheduler answers: {reason}") from None
-    try:
-        client.wait_for_workers(1, timeout=PATIENCE)
-    except TimeoutError:
-        client.close()
-        raise ValueError(f"--dask {address}: the scheduler has no workers") from None
-    return client
