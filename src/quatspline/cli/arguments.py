@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Literal, NoReturn
 
 from quatspline import __version__
+from quatspline.system.sentence import MOST as SENTENCE
 from quatspline.system.sentence import one_line
 
 REFUSED = 2
@@ -29,7 +30,9 @@ class _Parser(argparse.ArgumentParser):
         return f"{text}\n{self.closing()}\n" if self.closing else text
 
     def error(self, message: str) -> NoReturn:
-        self.exit(REFUSED, f"{self.prog}: {one_line(message)} (see {self.prog} --help)\n")
+        begin, end = f"{self.prog}: ", f" (see {self.prog} --help)"
+        room = SENTENCE - len(begin) - len(end)
+        self.exit(REFUSED, f"{begin}{one_line(message, room)}{end}\n")
 
 
 def parser() -> argparse.ArgumentParser:
