@@ -8,13 +8,16 @@ import shutil
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 import plugins
 
+from quatspline import discovery
 from quatspline.admission import TRIED
+from quatspline.runs.store import MANIFEST
 from quatspline.system.caching import cache_base
 
 STUCK = 180.0
@@ -75,8 +78,10 @@ class Tiny:
         for path in cache_base().glob("*"):  # what is compiled serves here, too
             if path.name != TRIED:
                 (folder / "cache" / path.name).symlink_to(path)
+        paths = [_package(folder.parent / "package"), *os.environ.get("PYTHONPATH", "").split(":")]
         self.environment = {
             **os.environ,
+            "PYTHONPATH": ":".join(filter(None, map(str, paths))),
             "QUATSPLINE_BASELINES": str(folder / "schemes"),
             "QUATSPLINE_EXPERIMENTS": str(folder / "experiments"),
             "QUATSPLINE_CACHE": str(folder / "cache"),
@@ -106,16 +111,30 @@ class Tiny:
     def tables(self) -> dict[str, pd.DataFrame]:
         """The tables without their timings."""
         paths = {name: self.out / f"{name}.csv" for name in EXPERIMENTS}
-        read = {name: pd.read_csv(path) for name, path in paths.items() if path.exists()}
+        blank = {"keep_default_na": False, "na_values": [""]}  # a scheme may be called null
+        read = {name: pd.read_csv(p, **blank) for name, p in paths.items() if p.exists()}
         return {name: table.drop(columns=TIMINGS) for name, table in read.items()}
 
-    def kept(self) -> set[str]:
-        """The whole lines of the journals."""
-        lines: set[str] = set()
-        for path in (self.out / ".cells").glob("*.jsonl"):
-            with_end = path.read_text(encoding="utf-8", errors="replace").splitlines(keepends=True)
-            lines |= {line for line in with_end if line.endswith('"}\n')}
+    def began(self) -> int:
+        """When a run last wrote the manifest, in ns; 0 where none has."""
+        with suppress(OSError):
+            return (self.out / MANIFEST).stat().st_mtime_ns
+        return 0
+
+    def kept(self) -> set[tuple[str, str]]:
+        """The whole lines of the journals, each with the experiment that it is of."""
+        lines: set[tuple[str, str]] = set()
+        for name in EXPERIMENTS:
+            with suppress(FileNotFoundError):  # not begun, or finished while one looks
+                content = (self.out / ".cells" / f"{name}.jsonl").read_bytes()
+                text = content.decode("utf-8", errors="replace").splitlines(keepends=True)
+                lines |= {(name, line) for line in text if line.endswith('"}\n')}
         return lines
+
+    def lost(self, before: set[tuple[str, str]]) -> int:
+        """How many lines are gone whose experiment has no table."""
+        gone = before - self.kept()
+        return sum(not (self.out / f"{name}.csv").exists() for name, _ in gone)
 
     def orphans(self, patience: float = 3.0) -> list[int]:
         """Processes of this folder's commands that still run, given a while to end."""
@@ -131,6 +150,22 @@ class Tiny:
     def clear(self) -> None:
         """Remove the results."""
         shutil.rmtree(self.out, ignore_errors=True)
+
+
+def _package(copy: Path) -> Path:
+    """A folder with a copy of the package without its schemes and experiments, made where there is none.
+
+    Most of a tiny run's time went into importing them; and no edit to the sources reaches runs on the way.
+    """
+    if not copy.exists():
+        left_out = shutil.ignore_patterns("__pycache__", "node_modules")
+        shutil.copytree(discovery.PACKAGE, copy / "quatspline", ignore=left_out)
+        for path in (copy / "quatspline" / "proposed").glob("[!_]*.py"):
+            path.unlink()
+        for name in ("baselines", "experiments"):  # as in an installed package
+            shutil.rmtree(copy / "quatspline" / name, ignore_errors=True)
+            (copy / "quatspline" / name).mkdir()
+    return copy
 
 
 def _bears(process: Path, mark: bytes) -> bool:

@@ -29,6 +29,10 @@ import pandas as pd
 import plugins
 from tiny import TRIED, Tiny, same
 
+KINDS = ["SIGINT", "SIGTERM", "SIGHUP", "SIGKILL", "writes", "corruptions", "together", "plug-ins"]
+KINDS += ["files", "full", "read-only"]
+IN_A_ROW = 4
+"""Kills of one run, each while it goes on after the last, before it is let finish and compared."""
 SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL]
 
 
@@ -38,6 +42,7 @@ class Tally:
 
     kind: str
     tried: int = 0
+    left: int = 0
     survived: int = 0
     lost: int = 0
     orphaned: int = 0
@@ -60,7 +65,9 @@ class Tally:
     @property
     def clean(self) -> bool:
         """Whether nothing went wrong."""
-        return self.tried == self.survived and not (self.lost or self.orphaned or self.tracebacks)
+        return self.tried == self.survived and not (
+            self.left or self.lost or self.orphaned or self.tracebacks
+        )
 
 
 class Torture:
@@ -76,9 +83,10 @@ class Torture:
         self.expected = self.tiny.tables()
         self.folder = folder
 
-    def _times(self, count: int) -> Iterator[int]:
+    def _times(self, tally: Tally, count: int) -> Iterator[int]:
         for i in range(count):
             if time.monotonic() > self.until:
+                tally.left = count - i
                 return
             yield i
 
@@ -90,19 +98,23 @@ class Torture:
     # -- kills ----------------------------------------------------------------------------------
 
     def kills(self, number: signal.Signals, count: int) -> Tally:
-        """A signal at random moments after the results folder is there, jobs 1 to 3."""
+        """A signal at random moments after the run has begun its manifest, jobs 1 to 3."""
         tally = Tally(f"{number.name} at random moments")
-        for i in self._times(count):
-            self.tiny.clear()
+        for i in self._times(tally, count):
+            if i % IN_A_ROW == 0:
+                self.tiny.clear()
+            earlier = self.tiny.began()
             process = self.tiny.start(jobs=1 + i % 3)
-            while not self.tiny.out.exists() and process.poll() is None:
+            while self.tiny.began() == earlier and process.poll() is None:
                 time.sleep(0.005)
             time.sleep(self.rng.uniform(0.0, self.usual))
             before = self.tiny.kept()
             process.send_signal(number)
             said = process.communicate(timeout=60)[1]
             fine = process.returncode in (0, -number, 128 + number)
-            self._after(tally, before, said, fine=fine, what=f"status {process.returncode}")
+            last = (i + 1) % IN_A_ROW == 0 or i + 1 == count or time.monotonic() > self.until
+            what = f"status {process.returncode}"
+            self._after(tally, before, said, fine=fine, what=what, finish=last)
         return tally
 
     def writes(self, count: int) -> Tally:
@@ -114,7 +126,7 @@ class Torture:
         own = dict(self.tiny.environment)
         paths = ":".join(filter(None, [str(hooks), own.get("PYTHONPATH", "")]))
         moments = [*range(10_000)] if count >= 200 else self.rng.sample(range(40), count)
-        for i in self._times(len(moments)):
+        for i in self._times(tally, len(moments)):
             self.tiny.clear()
             at = {"PYTHONPATH": paths, "TORTURE_AT": str(moments[i])}
             with self.tiny.start(env={**own, **at}) as process:
@@ -125,12 +137,19 @@ class Torture:
             self._after(tally, self.tiny.kept(), said, fine=killed, what=f"write {moments[i]}")
         return tally
 
-    def _after(self, tally: Tally, before: set[str], said: str, *, fine: bool, what: str) -> None:
+    def _after(
+        self,
+        tally: Tally,
+        before: set[tuple[str, str]],
+        said: str,
+        *,
+        fine: bool,
+        what: str,
+        finish: bool = True,
+    ) -> None:
         """Count a trial that ended a run: what is left of it, and whether it goes on."""
-        orphans = self.tiny.orphans()
-        finished = {path.stem for path in self.tiny.out.glob("*.csv")}
-        lost = 0 if finished else len(before - self.tiny.kept())
-        well, more = self._finish()
+        orphans, lost = self.tiny.orphans(), self.tiny.lost(before)
+        well, more = self._finish() if finish else (True, "")
         tally.count(fine and well, said + more, lost=lost, orphaned=len(orphans), what=what)
 
     # -- corruptions ----------------------------------------------------------------------------
@@ -138,9 +157,9 @@ class Torture:
     def corruptions(self, count: int) -> Tally:
         """Files of an interrupted run and of a finished one altered: healed, or refused in a sentence."""
         tally = Tally("corrupted files")
-        for i in self._times(count):
-            if i % 4:  # interrupted, with cells in the journal
-                self._interrupted()
+        states = [self._state(self._interrupted, "interrupted"), self._state(self._whole, "whole")]
+        for i in self._times(tally, count):
+            self._restore(states[i % 4 == 0])
             target = self._victim()
             what = f"{target.name}, {_damage(target, self.rng)}"
             status, said = self.tiny.run()
@@ -148,20 +167,39 @@ class Torture:
             well, more = (True, "") if status == 0 else self._finish("--force")
             well &= same(self.tiny.tables(), self.expected)
             tally.count(fine and well, said + more, orphaned=len(self.tiny.orphans()), what=what)
-            if not well:
-                self.tiny.clear()
         return tally
 
-    def _interrupted(self) -> None:
+    def _state(self, make: Callable[[], None], name: str) -> Path:
+        """A copy of the results and verdicts that a run has left."""
         self.tiny.clear()
+        make()
+        for place, kept in self._places(self.folder / name):
+            shutil.copytree(place, kept, dirs_exist_ok=True)
+        return self.folder / name
+
+    def _restore(self, state: Path) -> None:
+        for place, kept in self._places(state):
+            shutil.rmtree(place, ignore_errors=True)
+            shutil.copytree(kept, place)
+
+    def _places(self, state: Path) -> list[tuple[Path, Path]]:
+        tried = self.tiny.folder / "cache" / TRIED
+        return [(self.tiny.out, state / "results"), (tried, state / TRIED)]
+
+    def _whole(self) -> None:
+        status, said = self.tiny.run()
+        assert status == 0, said
+
+    def _interrupted(self) -> None:
+        """Stop a run that has cells in its journal."""
         with self.tiny.start() as process:
             while not self.tiny.kept() and process.poll() is None:
                 time.sleep(0.005)
             process.kill()
 
     def _victim(self) -> Path:
-        places = [self.tiny.out, self.tiny.folder / "cache" / TRIED]
-        found = [path for place in places for path in sorted(place.rglob("*")) if path.is_file()]
+        places = self._places(self.folder)
+        found = [path for place, _ in places for path in sorted(place.rglob("*")) if path.is_file()]
         return self.rng.choice(found)
 
     # -- others ---------------------------------------------------------------------------------
@@ -169,7 +207,7 @@ class Torture:
     def together(self, count: int, runs: int) -> Tally:
         """Several runs into one folder: all but one are refused, or keep what the first has finished."""
         tally = Tally(f"{runs} runs at once")
-        for _ in self._times(count):
+        for _ in self._times(tally, count):
             self.tiny.clear()
             processes = [self.tiny.start(jobs=1) for _ in range(runs)]
             said = [process.communicate(timeout=180)[1] for process in processes]
@@ -185,7 +223,7 @@ class Torture:
     def plug_ins(self, *groups: tuple[str, ...], limits: float = 20.0) -> Tally:
         """Bad plug-ins beside good ones: their rows, labelled, and nothing else."""
         tally = Tally("bad plug-ins")
-        for i in self._times(len(groups)):
+        for i in self._times(tally, len(groups)):
             tiny = Tiny(self.folder / f"plug-in {i}", *groups[i], limits=limits)
             status, said = tiny.run()
             wrong = _wrong(tiny.tables(), self.expected, groups[i])
@@ -198,7 +236,7 @@ class Torture:
     def files(self, made: Sequence[Path]) -> Tally:
         """Hostile files: one sentence and status 2, or what can be read of them."""
         tally = Tally("hostile files")
-        for i in self._times(len(made)):
+        for i in self._times(tally, len(made)):
             path = made[i]
             line = [sys.executable, "-m", "quatspline", "info", str(path)]
             try:
@@ -215,7 +253,7 @@ class Torture:
         """No room for files beyond some size: told in a line, and nothing that was whole is lost."""
         tally = Tally("a full disk")
         resource = __import__("resource")
-        for _ in self._times(count):
+        for _ in self._times(tally, count):
             self.tiny.clear()
             room = self.rng.randrange(0, 4000)
             limit = (resource.RLIMIT_FSIZE, (room, room))
@@ -234,7 +272,7 @@ class Torture:
         place.mkdir(exist_ok=True)
         if _mount(place, "-t", "tmpfs", "-o", "ro", "none"):
             try:
-                for _ in self._times(count):
+                for _ in self._times(tally, count):
                     status, said = self.tiny.run("--out", place / "results")
                     fine = status in (1, 2) and len(said.splitlines()) == 1
                     tally.count(fine, said, orphaned=len(self.tiny.orphans()), what=f"{status}")
@@ -324,24 +362,24 @@ def _mount(place: Path, *options: str) -> bool:
     return done.returncode == 0
 
 
-def trials(torture: Torture, share: float) -> Iterator[Callable[[], Tally]]:
-    """All kinds of trial, each with its count times a share."""
+def trials(torture: Torture, share: float) -> Iterator[tuple[str, Callable[[], Tally]]]:
+    """All kinds of trial by what chooses them, each with its count times a share."""
 
     def times(count: int) -> int:
         return max(1, round(share * count))
 
     for number in SIGNALS:
-        yield lambda number=number: torture.kills(number, times(100))
-    yield lambda: torture.writes(times(200))
-    yield lambda: torture.corruptions(times(200))
+        yield number.name, lambda number=number: torture.kills(number, times(100))
+    yield "writes", lambda: torture.writes(times(200))
+    yield "corruptions", lambda: torture.corruptions(times(200))
     for runs in (2, 4):
-        yield lambda runs=runs: torture.together(times(10), runs)
+        yield "together", lambda runs=runs: torture.together(times(10), runs)
     bad = [(name,) for name in list(plugins.BAD)[: times(len(plugins.BAD))]]
-    yield lambda: torture.plug_ins(*bad, tuple(plugins.BAD))
+    yield "plug-ins", lambda: torture.plug_ins(*bad, tuple(plugins.BAD))
     made = hostile.files(torture.folder / "hostile", torture.rng, times(150), times(10))
-    yield lambda: torture.files(list(made))
-    yield lambda: torture.full_disks(times(20))
-    yield lambda: torture.read_only(times(3))
+    yield "files", lambda: torture.files(list(made))
+    yield "full", lambda: torture.full_disks(times(20))
+    yield "read-only", lambda: torture.read_only(times(3))
 
 
 def main() -> int:
@@ -350,14 +388,18 @@ def main() -> int:
     parser.add_argument("--share", type=float, default=1.0, help="of the counts of all trials")
     parser.add_argument("--minutes", type=float, default=60.0, help="after which no trial begins")
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--only", metavar="KIND,...", help=f"of {', '.join(KINDS)}")
     given = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="torture-") as folder:
         until = time.monotonic() + 60.0 * given.minutes
         torture = Torture(Path(folder), given.seed, until)
-        columns = ("tried", "survived", "lost", "orphaned", "tracebacks")
+        columns = ("tried", "left", "survived", "lost", "orphaned", "tracebacks")
         print(f"{'trial':28}" + "".join(f"{name:>12}" for name in columns))
         tallies = []
-        for trial in trials(torture, given.share):
+        only = given.only.split(",") if given.only else KINDS
+        for kind, trial in trials(torture, given.share):
+            if kind not in only:
+                continue
             tally = trial()
             tallies.append(tally)
             counts = "".join(f"{getattr(tally, name):12}" for name in columns)
