@@ -3,11 +3,19 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 RUN := $(BIN)/python -m quatspline
-PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check install --constraint requirements.lock
+INSTALL := $(BIN)/python -m pip --quiet --disable-pip-version-check install
+# Locked releases, each checked by its hash: $(call LOCKED,test docs) is what the package needs and these extras add. Nothing is
+# built from source but a third-party scheme without a wheel for this machine: its archive is checked, not what its build asks for.
+LOCKED = $(INSTALL) --require-hashes $(if $(filter peers%,$(1)),,--only-binary :all:) $(foreach lock,run $(1),--requirement locks/$(lock).txt)
+TESTED := motions test dev dask docs
+UPGRADE ?=
 QUICK ?=
 COMPILED ?=
 MOTIONS ?= motions
 # Text that reaches a command as it was given, through the environment: neither make nor a shell reads it.
+override QUICK := $(value QUICK)
+override COMPILED := $(value COMPILED)
+override UPGRADE := $(value UPGRADE)
 override NAME := $(value NAME)
 override TASK := $(value TASK)
 override MOTIONS := $(value MOTIONS)
@@ -22,33 +30,35 @@ help: ## Show the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /|/' | awk -F'|' '{printf "  make %-16s %s\n", $$1, $$2}'
 
 # The environment proper: the package with the light third-party schemes, then its kernels compiled once.
-$(VENV)/run: pyproject.toml requirements.lock
+$(VENV)/run: pyproject.toml locks/run.txt locks/peers.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "quatspline needs Python 3.11 or newer; set PYTHON=")'
 	@$(PYTHON) -m venv $(VENV)
 	@echo "installing into $(VENV) ..."
-	@$(PIP) --editable .
-	@$(PIP) --editable '.[peers]' || echo "some third-party schemes could not be installed: their rows will read n/a"
+	@$(call LOCKED)
+	@$(INSTALL) --no-deps --no-build-isolation --editable .
+	@$(call LOCKED,peers) || echo "some third-party schemes could not be installed: their rows will read n/a"
 	@echo "more third-party schemes, whose rows read n/a without: make peers-heavy (294 MB to download)," \
 	  "peers-drake (58 MB, with Mosek, which is proprietary), peers-node (19 MB, needs Node.js)"
 	@$(RUN) warmup
 	@touch $@
 
-$(VENV)/motions: $(VENV)/run
-	@$(PIP) --editable '.[motions]'
+$(VENV)/motions: $(VENV)/run locks/motions.txt
+	@$(call LOCKED,motions)
 	@touch $@
 
-$(VENV)/test: $(VENV)/run
-	@$(PIP) --editable '.[peers,motions,test,dev,dask,docs]'
+$(VENV)/test: $(VENV)/run $(TESTED:%=locks/%.txt)
+	@$(call LOCKED,peers)
+	@$(call LOCKED,$(TESTED))
 	@touch $@
 
 peers-heavy: $(VENV)/run ## Add GTSAM, OpenUSD, Pinocchio, Spatial Math and VTK: 294 MB to download, 1.3 GB on disk
-	@$(PIP) --editable '.[peers-heavy]'
+	@$(call LOCKED,peers-heavy)
 
 peers-drake: $(VENV)/run ## Add Drake, which installs Mosek (proprietary): 58 MB to download, 233 MB on disk
-	@$(PIP) --editable '.[peers-drake]'
+	@$(call LOCKED,peers-drake)
 
 peers-node: ## Add three.js, glMatrix and Babylon.js, for which Node.js must be there: 19 MB to download, 93 MB on disk
-	@cd src/quatspline/peers/javascript && npm install --silent --no-audit --no-fund --no-package-lock
+	@cd src/quatspline/peers/javascript && npm ci --silent --no-audit --no-fund
 
 reproduce: $(VENV)/run ## The paper in full and every other experiment at quick size, into results/
 	@$(RUN) run
@@ -95,12 +105,11 @@ check-baseline: $(VENV)/test ## Conformance and claims of one scheme: NAME=my_sc
 reference: $(VENV)/run ## Take the tables of the last run as the reference and quote them in the README
 	@$(BIN)/python -m tools.readme --adopt results
 
-lock: ## Renew requirements.lock from the newest releases
-	@rm -rf $(VENV)-lock && $(PYTHON) -m venv $(VENV)-lock
-	@$(VENV)-lock/bin/pip --quiet --disable-pip-version-check install --editable '.[peers,peers-heavy,peers-drake,motions,test,dev,dask,docs]'
-	@(echo "# Versions that this release was tested with: constraints for pip, renewed by make lock."; \
-	  $(VENV)-lock/bin/pip --disable-pip-version-check freeze --exclude-editable) > requirements.lock.new
-	@mv requirements.lock.new requirements.lock && rm -rf $(VENV)-lock
+lock: ## Write locks/ again for pyproject.toml, with hashes; what is locked stays (UPGRADE=1: the newest releases)
+	@$(PYTHON) -m venv $(VENV)-lock
+	@$(subst $(BIN),$(VENV)-lock/bin,$(INSTALL)) --require-hashes --requirement locks/uv.txt
+	@PATH="$(CURDIR)/$(VENV)-lock/bin:$$PATH" $(VENV)-lock/bin/python -m tools.lock $(if $(UPGRADE),--upgrade)
+	@rm -rf $(VENV)-lock
 
 clean: ## Remove the environment, caches and generated results
 	@rm -rf $(VENV) build dist site .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks

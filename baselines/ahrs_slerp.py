@@ -8,7 +8,7 @@ from quatspline.quaternion import FloatArray
 
 
 class AhrsSlerp(SegmentSlerp):
-    """``ahrs.common.quaternion.slerp``, one call a segment that has samples.  MIT.
+    """``ahrs.common.quaternion.slerp``, one call per segment that has samples.  MIT.
 
     Documented as an array of orientations "along the minor arc of the great circle": C^0, interpolating,
     local (two keyframes shape a segment).  Steps below 3.6 degrees are interpolated along the chord

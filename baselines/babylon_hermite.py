@@ -9,7 +9,7 @@ from quatspline.quaternion import FloatArray
 
 
 class BabylonHermite(NodeCurve):
-    """``Animation.evaluate`` on quaternion keys with tangents, one call a sample.  Apache-2.0.
+    """``Animation.evaluate`` on quaternion keys with tangents, one call per sample.  Apache-2.0.
 
     ``Quaternion.Hermite``, a cubic in R^4, and normalised, which is how the library plays a CUBICSPLINE of
     glTF.  Tangents are those of the parabola through three keyframes: C^1, interpolating, local (four

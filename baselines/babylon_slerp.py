@@ -6,7 +6,7 @@ from quatspline.peers.node import NodeCurve
 
 
 class BabylonSlerp(NodeCurve):
-    """``Animation.evaluate`` on quaternion keys without tangents, one call a sample.  Apache-2.0.
+    """``Animation.evaluate`` on quaternion keys without tangents, one call per sample.  Apache-2.0.
 
     Documented as interpolation by ``Quaternion.Slerp``: C^0, interpolating, local (two keyframes shape a
     segment).  Through Node.js, which gets all samples at once [babylonjs].  Orientations only.

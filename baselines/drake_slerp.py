@@ -10,7 +10,7 @@ from quatspline.quaternion import FloatArray
 
 
 class DrakeSlerp(PeerCurve):
-    """``pydrake.trajectories.PiecewiseQuaternionSlerp``, one call a sample.  BSD-3-Clause.
+    """``pydrake.trajectories.PiecewiseQuaternionSlerp``, one call per sample.  BSD-3-Clause.
 
     Documented as "a trajectory for quaternions that are interpolated using piecewise slerp": C^0,
     interpolating, local (two keyframes shape a segment).  Velocity and acceleration are "expressed in the

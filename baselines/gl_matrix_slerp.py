@@ -6,7 +6,7 @@ from quatspline.peers.node import NodeCurve
 
 
 class GlMatrixSlerp(NodeCurve):
-    """``quat.slerp`` in double precision, one call a sample.  MIT.
+    """``quat.slerp`` in double precision, one call per sample.  MIT.
 
     Documented as "a spherical linear interpolation between two quat": C^0, interpolating, local (two
     keyframes shape a segment).  Through Node.js, which gets all samples at once [gl_matrix].  Orientations only.

@@ -9,7 +9,7 @@ from quatspline.quaternion import FloatArray
 
 
 class GlMatrixSqlerp(NodeCurve):
-    """``quat.sqlerp`` in double precision, one call a sample.  MIT.
+    """``quat.sqlerp`` in double precision, one call per sample.  MIT.
 
     Documented as "a spherical linear interpolation with two control points".  They are squad's inner
     quaternions for uneven times, with which squad is C^1, interpolating, local (four keyframes shape a

@@ -9,7 +9,7 @@ from quatspline.quaternion import FloatArray
 
 
 class GtsamSlerp(UnsignedSlerp):
-    """``gtsam.Rot3.slerp``, one call a sample.  BSD-2-Clause.
+    """``gtsam.Rot3.slerp``, one call per sample.  BSD-2-Clause.
 
     Documented as "spherical linear interpolation between *this and other": C^0, interpolating, local (two
     keyframes shape a segment).  Rotations are matrices, without a sign [gtsam].  Orientations only.

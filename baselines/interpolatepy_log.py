@@ -13,7 +13,7 @@ class InterpolatePyLog(InterpolatePyCurve):
     Published as C^2 and interpolating; global.  Keyframes become rotation vectors, made continuous
     past half a turn, and one cubic B-spline goes through them [interpolatepy; parker2023].  Rates are the
     library's ``get_physical_kinematics`` (its ``evaluate_velocity`` is the derivative of the rotation
-    vector) from its Python backend, world frame, turned into the body frame here; one call a sample.
+    vector) from its Python backend, world frame, turned into the body frame here; one call per sample.
     Open curves only.
     """
 

@@ -13,7 +13,7 @@ class InterpolatePyQuaternionSpline(InterpolatePyCurve):
 
     Published as C^1; interpolating, local.  The inner quaternions are those of even times
     [interpolatepy; shoemake1987].  Rates by differences, world frame, turned into the body frame here;
-    one call a sample.  Open curves only.
+    one call per sample.  Open curves only.
 
     Options
     -------

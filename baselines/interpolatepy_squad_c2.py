@@ -12,7 +12,7 @@ class InterpolatePySquadC2(InterpolatePyCurve):
     Published as C^2 with zero rates at both ends; interpolating, local.  The parameter of every
     segment is the quintic with vanishing derivatives at both of its ends, so the angular velocity is zero
     at every keyframe [interpolatepy; wittmann2023].  Rates by differences, world frame, turned into the
-    body frame here; one call a sample.  Open curves only.
+    body frame here; one call per sample.  Open curves only.
     """
 
     title = "InterpolatePy SquadC2"

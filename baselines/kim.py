@@ -133,7 +133,9 @@ def FIT(q, h, closed, sign, parameters, segments, report):
             q, h, closed, clamped, sign, d, w, segments
         )
         return
-    x = w, d, np.empty((9, h.size + 1))
+    # In the room of the constants, which are written when the jets are no longer read.
+    jets = segments.reshape(-1)[: 9 * (h.size + 1)].reshape((9, h.size + 1))
+    x = w, d, jets
     updates, change, met = solve(problem, x, tolerance, by_change, limit)
     while True:
         settle(d, w, met)

@@ -36,7 +36,7 @@ class KochanekBartels(SegmentCurve):
     Options
     -------
     tension, continuity, bias
-        T, C, B: numbers, or one a keyframe.  Ends of open data lack a neighbour and have none.
+        T, C, B: numbers, or one per keyframe.  Ends of open data lack a neighbour and have none.
     ends
         "chart" or "secant", as for `catmull-rom`.
     """

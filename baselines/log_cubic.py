@@ -60,18 +60,29 @@ class LogCubicSpline(SegmentCurve):
             )
         base = q[reference]
         x = _logs(q, reference)
-        spline = CubicSpline(keyframes.knots / keyframes.unit, x, bc_type=ends)
-        # coefficients (power from 3 to 0, segment, track, component) of t become those of u
-        power = np.arange(4)
-        c = spline.c[::-1] * ((h / keyframes.unit) ** power[:, None])[:, :, None, None]
+        c = CubicSpline(keyframes.knots / keyframes.unit, x, bc_type=ends).c[::-1]
+        # coefficients (power from 0 to 3, segment, track, component) of t become those of u
+        for power in range(4):
+            c[power] *= ((h / keyframes.unit) ** power)[:, None, None]
         segments = np.zeros((len(base), h.size, self.family.constants))
         segments[:, :, Q0:PHI] = base[:, None]
         phi = segments[:, :, PHI:].reshape(*segments.shape[:2], 3, 6)
-        constants = np.array([x[:-1], x[1:] - x[:-1], -c[2] - c[3], -c[3]])  # `polynomials` (1)
-        phi[..., :4] = np.moveaxis(constants, (0, 1, 2, 3), (3, 1, 0, 2))
-        # Bernstein coefficients bound |phi|
-        hull = c[0], c[0] + c[1] / 3, c[0] + (2 * c[1] + c[2]) / 3, c.sum(axis=0)
-        self._set_segments(segments, max(np.linalg.norm(b, axis=-1).max() for b in hull))
+        # one after the other, as all at once would take as much memory as the curve: `polynomials` (1)
+        constants = (lambda: x[:-1], lambda: x[1:] - x[:-1], lambda: -c[2] - c[3], lambda: -c[3])
+        for i, constant in enumerate(constants):
+            phi[..., i] = np.moveaxis(constant(), 1, 0)
+        self._set_segments(segments, _bound(c))
+
+
+def _bound(c: FloatArray) -> float:
+    """Of |phi| for the coefficients (4, segments, K, 3): the largest of Bernstein's coefficients."""
+    hull = (
+        lambda: c[0],
+        lambda: c[0] + c[1] / 3,
+        lambda: c[0] + (2 * c[1] + c[2]) / 3,
+        lambda: c.sum(axis=0),
+    )
+    return max(float(np.linalg.norm(each(), axis=-1).max()) for each in hull)
 
 
 def _logs(q: FloatArray, reference: int) -> FloatArray:

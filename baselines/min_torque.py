@@ -13,6 +13,7 @@ from quatspline.kernels.jit import REACH
 from quatspline.keyframes import Keyframes
 from quatspline.options import AtMost, Count, OnFailure, Positive
 from quatspline.proposed.local_quintic import LocalQuinticSpline
+from quatspline.quaternion import FloatArray
 from quatspline.segments import SegmentCurve
 
 ROWS = 8000
@@ -71,15 +72,12 @@ class MinimumTorqueSpline(SegmentCurve):
         max_iterations: Count = 200,
         on_failure: OnFailure = "raise",
     ) -> None:
-        m, tracks = subintervals, keyframes.tracks
+        m = subintervals
         h = np.repeat(keyframes.spacings / m, m)
         knots = np.append(keyframes.inside(np.arange(m) / m), keyframes.knots[-1])
-        start = LocalQuinticSpline.from_keyframes(keyframes)
-        nodes, v, a = (np.moveaxis(start.inner(knots, k), 1, 0).copy() for k in (0, 1, 2))
-        nodes[:, ::m] = tracks
-        rates = np.concatenate([v, a], axis=-1) / 2
-        segments = np.empty((len(tracks), h.size, self.family.constants))
-        report = np.zeros((len(tracks), 4))
+        nodes, rates = _start(keyframes, knots, m)
+        segments = np.empty((len(nodes), h.size, self.family.constants))
+        report = np.zeros((len(nodes), 4))
         # E of every track, rad^2 / time^3, and which came to rest at rounding
         work = ROWS * nodes.shape[0] * h.size
         self.energy, rest = engine.run(
@@ -95,3 +93,15 @@ class MinimumTorqueSpline(SegmentCurve):
             within=max(tolerance, HIT),
             settled=rest,
         )
+
+
+def _start(keyframes: Keyframes, knots: FloatArray, m: int) -> tuple[FloatArray, FloatArray]:
+    """Orientations (K, nodes, 4) at knots, and half the rates (K, nodes, 6), of which the search begins."""
+    start = LocalQuinticSpline.from_keyframes(keyframes)
+    nodes = np.moveaxis(start.inner(knots, 0), 1, 0).copy()
+    nodes[:, ::m] = keyframes.tracks
+    rates = np.empty((*nodes.shape[:2], 6))
+    for order in (1, 2):
+        half = rates[..., 3 * order - 3 : 3 * order]
+        np.multiply(np.moveaxis(start.inner(knots, order), 1, 0), 0.5, out=half)
+    return nodes, rates

@@ -11,7 +11,7 @@ from quatspline.quaternion import FloatArray
 
 
 class PinocchioInterpolate(UnsignedSlerp):
-    """``pinocchio.SE3.Interpolate`` of poses at the origin, one call a sample.  BSD-3-Clause.
+    """``pinocchio.SE3.Interpolate`` of poses at the origin, one call per sample.  BSD-3-Clause.
 
     Documented as "linear interpolation on the SE3 manifold"; with no translation a slerp: C^0,
     interpolating, local (two keyframes shape a segment).  Rotations are matrices, without a sign

@@ -6,7 +6,7 @@ from quatspline.peers.pyglm import PyGlmCurve
 
 
 class PyGlmMix(PyGlmCurve):
-    """``glm.mix`` of double-precision quaternions, one call a sample.  zlib licence.
+    """``glm.mix`` of double-precision quaternions, one call per sample.  zlib licence.
 
     GLM documents an interpolation that "is oriented and the rotation is performed at constant speed",
     and recommends ``slerp`` for short paths: C^0, interpolating, local (two keyframes shape a segment).

@@ -6,7 +6,7 @@ from quatspline.peers.pyglm import PyGlmCurve
 
 
 class PyGlmSlerp(PyGlmCurve):
-    """``glm.slerp`` of double-precision quaternions, one call a sample.  zlib licence.
+    """``glm.slerp`` of double-precision quaternions, one call per sample.  zlib licence.
 
     GLM documents that "the interpolation always take the short path and the rotation is performed at
     constant speed": C^0, interpolating, local (two keyframes shape a segment) [pyglm].  Orientations only.

@@ -9,7 +9,7 @@ from quatspline.quaternion import FloatArray
 
 
 class PyquaternionSlerp(PairwiseSlerp):
-    """``pyquaternion.Quaternion.slerp``, one call a sample.  MIT.
+    """``pyquaternion.Quaternion.slerp``, one call per sample.  MIT.
 
     Documented as "along the minor arc of a great circle", the result "guaranteed to be a unit
     quaternion": C^0, interpolating, local (two keyframes shape a segment).  Steps below 3.6 degrees are

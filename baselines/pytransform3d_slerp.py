@@ -8,7 +8,7 @@ from quatspline.quaternion import FloatArray
 
 
 class Pytransform3dSlerp(SegmentSlerp):
-    """``pytransform3d.batch_rotations.quaternion_slerp_batch``, one call a segment that has samples.
+    """``pytransform3d.batch_rotations.quaternion_slerp_batch``, one call per segment that has samples.
 
     C^0, interpolating, local (two keyframes shape a segment).  The library's batch is many steps between
     one pair, which asks for the loop over segments.  Orientations only [pytransform3d].

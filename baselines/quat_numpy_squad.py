@@ -12,7 +12,7 @@ from quatspline.quaternion import FloatArray, conj, mul
 
 
 class QuatNumpySquad(SegmentwiseCurve):
-    """``quat.squad`` of a segment's two keyframes and their neighbours, one call a sample.  Apache-2.0.
+    """``quat.squad`` of a segment's two keyframes and their neighbours, one call per sample.  Apache-2.0.
 
     Documented as "spherical cubic (squad) interpolation" with "C^1 continuity through the four control
     points": interpolating, local (four keyframes shape a segment).  It takes no times, so that evenly

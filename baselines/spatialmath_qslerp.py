@@ -8,7 +8,7 @@ from quatspline.quaternion import FloatArray
 
 
 class SpatialmathQslerp(PairwiseSlerp):
-    """``spatialmath.base.qslerp``, one call a sample.  MIT.
+    """``spatialmath.base.qslerp``, one call per sample.  MIT.
 
     Documented as interpolation "on a great circle on a 4D hypersphere": C^0, interpolating, local (two
     keyframes shape a segment) [spatialmath].  Orientations only.

@@ -16,7 +16,7 @@ FRAME = "J2000"
 
 
 class SpiceypyCk3(PeerCurve):
-    """A C-kernel of data type 3 written by ``ckw03``, read by ``ckgp``, one call a sample.  MIT.
+    """A C-kernel of data type 3 written by ``ckw03``, read by ``ckgp``, one call per sample.  MIT.
 
     SPICE documents that pointing between two instances of an interval is found "by linear
     interpolation": a rotation at constant rate about a fixed axis, so C^0, interpolating, local (two

@@ -7,7 +7,7 @@ from quatspline.quaternion import FloatArray
 
 
 class TransformationsSlerp(PairwiseSlerp):
-    """``transformations.quaternion_slerp``, one call a sample.  BSD-3-Clause.
+    """``transformations.quaternion_slerp``, one call per sample.  BSD-3-Clause.
 
     Documented as "spherical linear interpolation between two quaternions": C^0, interpolating, local
     (two keyframes shape a segment).  The library's ``shortestpath`` is switched off, because keyframes arrive

@@ -13,7 +13,7 @@ class Transforms3dSlerp(SegmentSlerp):
     """a (a^-1 b)^u by ``qmult``, ``qconjugate`` and ``qpow`` of ``transforms3d.quaternions``.  BSD.
 
     The library has no slerp.  Its power is documented as "the nth power of quaternion q", n "a real
-    number": C^0, interpolating, local (two keyframes shape a segment), two calls a sample
+    number": C^0, interpolating, local (two keyframes shape a segment), two calls per sample
     [transforms3d].  Orientations only.
     """
 

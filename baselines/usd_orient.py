@@ -10,7 +10,7 @@ from quatspline.quaternion import FloatArray
 
 
 class UsdOrient(PeerCurve):
-    """An ``orient`` operation of double precision, its attribute read once a sample.  TOST 1.0.
+    """An ``orient`` operation of double precision, its attribute read once per sample.  TOST 1.0.
 
     A stage's interpolation is linear unless it is told otherwise; between quaternions that is a slerp: C^0,
     interpolating, local (two keyframes shape a segment) [openusd].  Orientations only.

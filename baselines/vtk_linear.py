@@ -6,7 +6,7 @@ from quatspline.peers.vtk import VtkCurve
 
 
 class VtkLinear(VtkCurve):
-    """``vtkQuaternionInterpolator`` with ``SetInterpolationTypeToLinear``, one call a sample.  BSD-3-Clause.
+    """``vtkQuaternionInterpolator`` with ``SetInterpolationTypeToLinear``, one call per sample.  BSD-3-Clause.
 
     Documented as "linear in form (using spherical linear interpolation SLERP)": C^0, interpolating, local
     (two keyframes shape a segment) [vtk].  Orientations only.

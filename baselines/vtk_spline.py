@@ -6,7 +6,7 @@ from quatspline.peers.vtk import VtkCurve
 
 
 class VtkSpline(VtkCurve):
-    """``vtkQuaternionInterpolator`` with ``SetInterpolationTypeToSpline``, one call a sample.  BSD-3-Clause.
+    """``vtkQuaternionInterpolator`` with ``SetInterpolationTypeToSpline``, one call per sample.  BSD-3-Clause.
 
     Documented as "spline interpolation (using SQUAD)" on "the surface of the unit quaternion sphere":
     C^1, interpolating, local (four keyframes shape a segment); the neighbours of both ends are the ends

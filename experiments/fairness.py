@@ -15,6 +15,7 @@ from quatspline.instruments.continuity import jumps, measured_continuity
 from quatspline.instruments.curvature import Bending, curvature_energy
 from quatspline.instruments.fairness import fairness
 from quatspline.instruments.least_curvature import least_curvature
+from quatspline.instruments.node_rates import NodeRates
 from quatspline.instruments.trials import Row, attempted, builder
 from quatspline.quaternion import FloatArray
 from quatspline.runs.experiment import Run
@@ -80,8 +81,9 @@ def measures(name: str, times: FloatArray, keyframes: FloatArray) -> list[Row]:
     if not curve.interpolates:
         return [{"failure": PASSES_BY, "version": version(name)}]
     jump = measured_continuity(jumps(curve, (0, 1))) < 1
-    fair = fairness(curve)
-    bent = Bending(np.inf, "the velocity jumps") if jump else curvature_energy(curve)
+    rates = NodeRates(curve)
+    fair = fairness(curve, rates)
+    bent = Bending(np.inf, "the velocity jumps") if jump else curvature_energy(curve, rates)
     row: Row = {**fair, "curvature": bent.energy, "curvature_reason": bent.reason}
     if name == REFERENCE:
         row |= _least_curvature(curve, fair["length"])

@@ -55,7 +55,7 @@ def cells(run: Run) -> list[dict[str, Any]]:
 
 
 def _concerned(run: Run) -> list[str]:
-    """Schemes that are cheap to set up hundreds of times a joint; at quick size those that are shown."""
+    """Schemes that are cheap to set up hundreds of times per joint; at quick size those that are shown."""
     if run.quick and not run.schemes:
         return list(SHOWN)
     known = {name: catalogue.scheme(name) for name in catalogue.schemes()}

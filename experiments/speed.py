@@ -113,7 +113,7 @@ PANELS = ("evaluate", "one sample", "set-up")
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Nanoseconds an item, in-house schemes in colour, peers hollow, the floors as lines."""
+    """Nanoseconds per item, in-house schemes in colour, peers hollow, the floors as lines."""
     fig, panels = style.axes(style.PAGE, 6.4, 1, len(PANELS), sharey=True)
     order = table[(table["task"] == PANELS[0]) & table["seconds_median"].notna()]
     names = [n for n in order.sort_values("nanoseconds_per_item")["scheme"] if n not in FLOORS]

@@ -37,7 +37,7 @@ def key_candidates(rng: np.random.Generator, count: int) -> FloatArray:
 
 
 def teapot_candidates(rng: np.random.Generator, count: int) -> FloatArray:
-    """Euler angles (count, 6, 3): a teapot that follows a circle (yaw 60 degrees a keyframe) and tumbles."""
+    """Euler angles (count, 6, 3): a teapot that follows a circle (yaw 60 degrees per keyframe) and tumbles."""
     yaw = np.broadcast_to(6 * np.arange(6), (count, 6))
     pitch = rng.integers(-3, 4, (count, 6))
     roll = rng.integers(-18, 19, (count, 6))

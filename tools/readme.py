@@ -1,8 +1,8 @@
 """Quote measurements in the README and in docs: ``python -m tools.readme [--adopt results]``.
 
 Text between ``<!-- begin NAME -->`` and ``<!-- end NAME -->`` is generated from ``results/reference``; --adopt
-first takes the tables of a finished run as the new reference.  The command that the README shows is run, and its
-picture drawn.
+first takes the tables of a finished run as the new reference.  The command that the README shows is run; its
+picture and those of derivations are drawn.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from quatspline.findings.findings import findings, lines, reader
 from quatspline.findings.headlines import headlines
 from quatspline.runs.manifest import MANIFEST, read_json
 from quatspline.system.atomic import replacing
+from tools.derivations import draw
 from tools.robot import robot
 
 ROOT = PACKAGE.parents[1]
@@ -154,6 +155,7 @@ def main() -> None:
         with replacing(file) as aside:
             aside.write_text(renewed(file.read_text(encoding="utf-8")), encoding="utf-8")
     robot(ROOT / ROBOT, PICTURES / "robot.png")
+    draw(PICTURES)
 
 
 if __name__ == "__main__":

@@ -28,7 +28,7 @@ def robot(file: Path, picture: Path) -> None:
     """Draw the angular speed that schemes make of a file of keyframes, its waits shaded."""
     motion = qs.read_motion(file)
     curves = {name: qs.build(name, motion.times, motion.quaternions[:, 0]) for name in SHOWN}
-    with style.house():
+    with style.applied():
         fig = Figure(figsize=(style.PAGE, 2.4))
         ax = fig.subplots()
         for wait in _waits(motion):

@@ -1,4 +1,4 @@
-"""Compare schemes on somebody's own keyframes: the table, and the curves behind it."""
+"""Compare schemes on a user's own keyframes: the table, and the curves behind it."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ NOTE = (
     "keyframes, hold_rotation that from the keyframe during a hold (degrees); peak_rate and peak_acceleration the "
     "largest |omega| and |alpha| in degrees; lookahead how many keyframes after a segment's own two shape it; "
     "curvature the energy of the path's bending (1/rad), of closed forms alone; noise what the keyframes are told to "
-    "have (degrees an axis, 0 for none); key_speed the least speed at an inner keyframe, peak_speed the largest, over "
+    "have (degrees about each axis; 0: none); key_speed the least at an inner keyframe, peak_speed the largest, over "
     "the mean; length what the curve turns, keyframes_length the sum of the steps between keyframes (rad). Iterative "
     "schemes solve to 1e-9 by solver; note says where the published iteration failed and another found the curve. "
     "Every segment is measured, however many there are; failure says why a scheme was not. Compare seconds within "
@@ -66,7 +66,7 @@ def compare(
     closed: bool = False,
     **options: Any,
 ) -> pd.DataFrame:
-    """Measure schemes on keyframes: one row a scheme, what does not apply or fails with its reason.
+    """Measure schemes on keyframes: one row per scheme, what does not apply or fails with its reason.
 
     Parameters
     ----------

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 import threading
+from collections.abc import Iterator
 from typing import Any, Literal
 
 import numpy as np
@@ -33,11 +34,15 @@ from quatspline.kernels.jit import (
 from quatspline.kernels.scalars import NEAR
 from quatspline.keyframes import segment_of
 from quatspline.solving import WRONG_FIXED_POINT, SolveReport
+from quatspline.system.pages import Pages
 
-CHUNK = 4096
-"""Segments fitted at once where a call asks for a window of a long curve ..."""
-LAZY = 4 * CHUNK
-"""... which has more segments than this."""
+CHUNK, AT_ONCE = 256, 16
+"""Segments that are fitted where a call asks for one of them, and how many neighbouring chunks at once, ..."""
+LAZY = 64 * CHUNK
+"""... of a curve that has more segments than this."""
+
+MOST = 0.5
+"""Share of a curve's chunks that are most of them: wanted at once, they are written in larger pages."""
 
 THREAD_MINIMUM = 20_000
 """Samples that make a further thread worth its start."""
@@ -57,6 +62,7 @@ class SegmentCurve(Curve):
     _waiting: BoolArray | None = None
     """While a long curve is not wholly fitted: which chunks wait."""
     _fitting: threading.Lock
+    _room: Pages
     _refused = False
     """Whether plain Python refused to do what machine code does, such as dividing by zero."""
     _sample: Any = None
@@ -89,7 +95,9 @@ class SegmentCurve(Curve):
             self._waiting = np.ones(-(-count // CHUNK), bool)
             self._fitting = threading.Lock()
             # Kernels for any angle, now and later: a value must not depend on what was called before.
-            self._set_segments(np.empty((tracks, count, self.family.constants)), np.inf)
+            shape = tracks, count, self.family.constants
+            self._room = Pages(math.prod(shape))
+            self._set_segments(self._room.array.reshape(shape), np.inf)
         else:
             fitted = self._fit_rows(frames.tracks, frames.spacings, frames.closed, report)
             self._set_segments(*fitted)
@@ -121,28 +129,43 @@ class SegmentCurve(Curve):
             raise TypeError(f"{self.name}: its fit kernel does not write report[REACH]")
         return segments, reach
 
-    def _fit_window(self, low: float, high: float) -> None:
-        """Fit the chunks of segments from low to high where that was not done before.
-
-        Both are times since the first keyframe.
-        """
-        inside = low >= 0.0 and high < self.segment_knots[-1]
-        if self._keyframes.closed and not inside:
-            low, high = 0.0, self.segment_knots[-1]
-        first, last = np.searchsorted(self.segment_knots[1:-1], (low, high), "right") // CHUNK
+    def _fit_where(self, t: FloatArray) -> None:
+        """Fit the chunks of segments that samples t, since the first keyframe, lie in, unless that was done before."""
         with self._fitting:
             if self._waiting is None:
                 return
-            for chunk in first + np.flatnonzero(self._waiting[first : last + 1]):
-                self._fit_chunk(chunk * CHUNK)
-                self._waiting[chunk] = False
+            wanted = self._waiting & self._asked(t)
+            if wanted.mean() > MOST:
+                self._room.whole()
+            for run in _runs(wanted):
+                self._fit_chunks(run)
+                self._waiting[run] = False
             if not self._waiting.any():
                 self._waiting = None
 
-    def _fit_chunk(self, start: int) -> None:
-        """Fit CHUNK segments from their keyframes and enough on either side."""
+    def _asked(self, t: FloatArray) -> BoolArray:
+        """Which chunks samples lie in; where they are as many as the segments between them, all of those.
+
+        Then hardly one is without a sample, and to look at every sample would take longer than a fit.
+        """
+        starts = self.segment_knots[CHUNK:-1:CHUNK]
+        low, high = t.min(), t.max()
+        inside = low >= 0.0 and high < self.segment_knots[-1]
+        if self._keyframes.closed and not inside:
+            return np.ones(starts.size + 1, bool)
+        asked = np.zeros(starts.size + 1, bool)
+        first, last = np.searchsorted(starts, (low, high), "right")
+        if t.size < (last - first) * CHUNK:
+            asked[np.searchsorted(starts, t, "right")] = True
+        else:
+            asked[first : last + 1] = True
+        return asked
+
+    def _fit_chunks(self, run: slice) -> None:
+        """Fit neighbouring chunks from their keyframes and enough on either side."""
         frames, margin = self._keyframes, self.support or 0
-        n, stop = frames.count, min(start + CHUNK, self.segments.shape[1])
+        start, n = run.start * CHUNK, frames.count
+        stop = min(run.stop * CHUNK, self.segments.shape[1])
         index = np.arange(start - margin, stop + margin + 1)
         if not frames.closed:
             index = index[(index >= 0) & (index < n)]
@@ -249,7 +272,7 @@ class SegmentCurve(Curve):
         threads: int,
     ) -> int:
         if self._waiting is not None and t.size:
-            self._fit_window(t.min() - origin, t.max() - origin)
+            self._fit_where(t - origin)
         kernel = self.kernels[order]
         if not self._compiled[order] and not self._repays(order, t.size):
             with engine.unfit_suppressed():
@@ -298,6 +321,15 @@ class SegmentCurve(Curve):
 
     def _inner(self, t: FloatArray, order: int) -> FloatArray:
         return self.inner(t, order)[:, 0]
+
+
+def _runs(wanted: BoolArray) -> Iterator[slice]:
+    """Neighbouring chunks that are wanted, AT_ONCE of them at most."""
+    index = np.flatnonzero(wanted)
+    for run in np.split(index, np.flatnonzero(np.diff(index) > 1) + 1):
+        for k in range(0, run.size, AT_ONCE):
+            part = run[k : k + AT_ONCE]
+            yield slice(int(part[0]), int(part[-1]) + 1)
 
 
 def _finite(column: FloatArray) -> FloatArray:

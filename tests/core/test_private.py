@@ -19,6 +19,7 @@ EXCEPTIONS = {
     ("instruments/test_cost.py", "_fit"): "watched, for how often it is called",
     ("instruments/test_cost.py", "_setup"): "of the forecast",
     ("instruments/test_cost.py", "_waiting"): "tells whether all of a curve is fitted",
+    ("core/test_segments.py", "_waiting"): "tells what of a curve is fitted",
     ("schemes/test_monotone_quintic.py", "_waiting"): "tells whether all of a curve is fitted",
     ("report/test_compare.py", "_fit"): "replaced by one that fails",
     ("report/test_choosing.py", "_convergence"): "of the experiment",

@@ -25,7 +25,7 @@ def orders(curve: Curve, t: np.ndarray) -> list[np.ndarray]:
 @pytest.mark.parametrize("closed", [False, True])
 @pytest.mark.parametrize("a_segment", [1, 3, LONG - 1, LONG, 70, 500])
 def test_blocks_of_every_kind_agree_with_single_samples(closed: bool, a_segment: int) -> None:
-    """Few samples a segment make mixed blocks, many make long ones, both in one batch too."""
+    """Few samples per segment make mixed blocks, many make long ones, both in one batch too."""
     rng = np.random.default_rng(a_segment)
     h = rng.uniform(0.5, 2.0, 40 + closed)
     times = np.concatenate([[0.0], np.cumsum(h)])
@@ -130,3 +130,23 @@ def test_tracks_and_threads_change_nothing(name: str) -> None:
             assert apart(together[:, k], alone) < ROUNDING * 10**order
     dense = np.linspace(0.0, 59.0, 90_000)
     np.testing.assert_array_equal(curve(dense, threads=2)[::97], curve(dense[::97]))
+
+
+@pytest.mark.parametrize("closed", [False, True])
+def test_few_samples_of_a_long_curve_fit_what_they_lie_in(closed: bool) -> None:
+    """Chunks that hold a sample and no other, at knots and beside them, whatever their order."""
+    q = np.tile(walk(500, 40.0, seed=6), (LAZY // 500 + 2, 1))
+    knots = np.cumsum(np.random.default_rng(1).uniform(0.5, 2.0, len(q) + closed))
+    lazy, whole = (qs.build("quartic", knots, q, closed=closed) for _ in range(2))
+    whole(knots)
+    for chunk in (40, 3, 17, 4):
+        near = knots[chunk * CHUNK] + np.array([0.0, -1e-9, 0.3, 1e-9])
+        np.testing.assert_array_equal(lazy(near), whole(near))
+    scattered = np.random.default_rng(2).permutation(knots[[5, 20 * CHUNK - 1, -2]])
+    np.testing.assert_array_equal(lazy(scattered), whole(scattered))
+    fitted = np.flatnonzero(~lazy._waiting)
+    last = (len(q) + closed - 2) // CHUNK
+    assert fitted.tolist() == sorted({2, 3, 4, 16, 17, 39, 40, 0, 19, last})
+    every = 0.5 * (knots[1:] + knots[:-1])
+    np.testing.assert_array_equal(lazy(every), whole(every))
+    assert lazy._waiting is None

@@ -7,7 +7,8 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 from quatspline.catalogue import found
-from quatspline.figures.looks import DASHES, FAMILIES, LEADING, MARKERS, OTHER, scheme_style
+from quatspline.figures.looks import DASHES, FAMILIES, MARKERS, OTHER, scheme_style
+from quatspline.figures.named import NAMED
 from quatspline.page.plots import scheme_look
 
 CONTRAST = 3.0
@@ -36,7 +37,7 @@ def test_no_two_schemes_are_alike_on_the_page() -> None:
 def test_every_shipped_scheme_has_a_family_and_every_member_exists() -> None:
     members = [name for family in FAMILIES for name in family.members]
     assert len(members) == len(set(members))
-    assert set(members) >= set(LEADING)
+    assert set(members) >= set(NAMED)
     assert set(members) == set(found())
 
 

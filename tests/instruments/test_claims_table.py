@@ -146,7 +146,7 @@ def test_the_papers_ratio_of_costs_is_protocol(table: pd.DataFrame) -> None:
     once = row_of(table, "nielson", f"{text} once")
     assert (per_frame["verdict"], once["verdict"]) == (HOLDS, DEPARTS)
     # By hand: 3 keyframes solved for, 16 updates of 2 slerps and a residual of 3; 2 slerps and 3 logs for each
-    # of 4 segments; 6 slerps a frame.  The quartic: a log a segment, 3 exps a frame.
+    # of 4 segments; 6 slerps per frame.  The quartic: a log per segment, 3 exps per frame.
     by_hand = (2.0 * (3 * (16 * 2 + 3) + 4 * 2 + 6) + 4 * 3) / (4 + 3)
     assert float(per_frame["measured"]) == pytest.approx(by_hand, rel=1e-2)
 
@@ -214,7 +214,7 @@ def test_works_that_were_not_read_are_in_the_bibliography() -> None:
 
 def test_figure_and_caption_say_the_verdicts(table: pd.DataFrame) -> None:
     module = load(files()["claims"], "experiment")
-    with style.house():
+    with style.applied():
         figure = module.draw(table)
     texts = {text.get_text() for text in figure.axes[0].texts}
     others = table[table["claim"].isin([claim.text for claim in published("quartic")])]
@@ -243,7 +243,7 @@ def test_kim_is_not_red_for_the_papers_cost(of_kim: pd.DataFrame) -> None:
     assert len(departing) > 0
     assert (departing["fault"] == PUBLICATION).all()
     module = load(files()["claims"], "experiment")
-    with style.house():
+    with style.applied():
         axes = module.draw(of_kim).axes[0]
     shown = axes.images[0].get_array()
     red = list(module.COLORS).index(DEPARTS)

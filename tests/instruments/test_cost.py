@@ -13,7 +13,7 @@ from quatspline.catalogue import scheme
 from quatspline.curve import Curve
 from quatspline.discovery import shipped
 from quatspline.runs.experiment import Run
-from quatspline.segments import LAZY
+from quatspline.segments import CHUNK, LAZY
 from quatspline.system.loading import load
 from quatspline.timing import cost, speed
 from quatspline.timing.budget import Budget, Call, calls, seconds
@@ -92,6 +92,21 @@ def test_peak_memory_counts_what_compiled_code_allocates():
     assert 2 * size * 0.95 <= two <= 3 * size * 1.05
 
 
+def test_few_samples_of_a_long_curve_take_a_share_of_its_memory():
+    """In chunks of 256 segments, one in 16 of which holds a sample; many samples take it all."""
+    t = np.arange(400_000.0)
+    q = np.tile([1.0, 0.0, 0.0, 0.0], (t.size, 1))
+    whole = scheme("quartic").family.constants * 8 * t.size
+    curves = [scheme("quartic")(t, q) for _ in range(4)]  # each call has a curve of its own
+    few, all_of = (
+        cost.peak_bytes(lambda at=at: curves.pop()(at)) for at in (t[:: 16 * CHUNK], t[::CHUNK])
+    )
+    if np.isnan(few):
+        pytest.skip("the system does not tell")
+    assert few < 0.15 * whole
+    assert all_of > 0.85 * whole
+
+
 def test_operations_hold_all_iterations():
     q = np.array([[1, 0, 0, 0], [0.8, 0.6, 0, 0], [0.6, 0, 0.8, 0], [0, 0, 0.6, 0.8]])
     curve = scheme("nielson")(None, q)
@@ -102,6 +117,23 @@ def test_operations_hold_all_iterations():
     assert cost.operations(curve, "sample") == {"exps": 0, "logs": 0, "slerps": 6}
     peer = cost.operations(scheme("scipy-slerp")(None, q), "sample")
     assert all(np.isnan(count) for count in peer.values())
+
+
+@pytest.mark.parametrize(
+    ("seconds_each", "weighed"),
+    [(1e-7, 100_000), (0.9e-5, 100_000), (1.1e-5, 10_000), (4.6e-4, 1000), (1.1e-3, None)],
+)
+def test_memory_is_measured_at_the_largest_size_that_takes_a_second(seconds_each, weighed):
+    module = load(shipped("experiments") / "cost.py", "experiment")
+    allowed = module.MEMORY_SHARE * module.BUDGET
+    sizes = [
+        size
+        for size in module.SETUP
+        if module.weighed("set-up", size, seconds_each * size / allowed) == size
+    ]
+    assert sizes == ([weighed] if weighed else [])
+    assert module.weighed("set-up", 1000, np.nan) is None  # over budget
+    assert module.weighed("one sample", 1000, seconds_each) is None
 
 
 @pytest.mark.parametrize("task", ["set-up", "evaluation", "one sample"])

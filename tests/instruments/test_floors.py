@@ -22,7 +22,7 @@ def task(**how: object) -> speed.Task:
 
 
 def test_chains_take_the_steps_that_are_counted() -> None:
-    """By x = 1 and y = 1 a chain grows by one a step, whatever its start: the mean of starts is v + 3.5."""
+    """By x = 1 and y = 1 a chain grows by one per step, whatever its start: the mean of starts is v + 3.5."""
     values = np.arange(5.0)
     floors.multiply_add(values, 1.0, 1.0)
     assert (values == np.arange(5.0) + 3.5 + floors.STEPS).all()

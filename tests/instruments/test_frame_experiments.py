@@ -93,6 +93,6 @@ def test_experiment(name: str) -> None:
     assert {*module.KEYS, *module.FORMATS} <= set(table)
     assert not table.duplicated(module.KEYS).any()
     if hasattr(module, "draw"):
-        with style.house():
+        with style.applied():
             assert len(module.draw(table).axes) == 3
         assert "spacing" in module.caption(table)

@@ -112,7 +112,7 @@ def test_a_scheme_that_does_not_apply_is_a_row_with_its_reason(measured):
 
 def test_figures_are_drawn_from_the_table(measured):
     _, module, _, table = measured
-    with style.house():
+    with style.applied():
         figure = module.draw(table)
     assert figure.axes
     assert all(len(line) > 40 for line in [module.caption(table), module.NOTE])

@@ -165,7 +165,7 @@ def test_only_variants_are_measured() -> None:
 
 def test_the_figure_is_drawn_from_the_table(table: pd.DataFrame) -> None:
     module = load(files()["slerp-variants"], "experiment")
-    with style.house():
+    with style.applied():
         figure = module.draw(table)
     assert [len(ax.lines) for ax in figure.axes] == [3, 3, 2]
     assert set(module.FORMATS) <= set(table.columns)

@@ -42,6 +42,7 @@ EXCURSION = pd.DataFrame(
         "data": "hold 10 : 1",
         "scheme": ["slerp", "quartic", "kim"],
         "wander_worst": [0.0, 41.0, 90.0],
+        "overshot": [0.0, 0.2, 0.3],
     }
 )
 """What wanders where a body holds still."""

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from pages import Elements
@@ -15,6 +17,8 @@ from quatspline.page import write_page
 from quatspline.page.chooser import COLUMNS, chooser, facts, failure
 from quatspline.page.derivations import Derivations
 from quatspline.page.folder import Folder
+from quatspline.page.reference import reference
+from quatspline.page.speed import speed as bounds
 from quatspline.page.table1 import side_by_side
 from quatspline.runs.results import Results
 from quatspline.trajectories.paper import CASES
@@ -91,7 +95,17 @@ def test_derivations_are_linked_from_folders_beside_the_documentation(tmp_path: 
     for scheme in ("quartic", "squad", "scipy-slerp"):
         assert (REFERENCE / beside.of(scheme)).is_file()
     assert beside.of("unheard-of") == ""
-    assert Derivations(tmp_path).of("quartic") == ""
+    assert Derivations(tmp_path).of("quartic") == Derivations(tmp_path).reading("speed") == ""
+
+
+def test_tables_are_linked_to_what_their_columns_mean() -> None:
+    beside = Derivations(REFERENCE)
+    for table in Folder(REFERENCE).tables:
+        page, _, anchor = beside.reading(table).partition("#")
+        assert (REFERENCE / page).is_file(), table
+        assert re.search(rf"^## .*`{table}`", (REFERENCE / page).read_text("utf-8"), re.MULTILINE)
+        assert table in anchor
+    assert beside.reading("unheard-of") == ""
 
 
 def test_table_1_has_the_twelve_rows_of_the_paper() -> None:
@@ -99,13 +113,15 @@ def test_table_1_has_the_twelve_rows_of_the_paper() -> None:
     printed = [(case.name, str(row.frames)) for case in CASES.values() for row in case.rows]
     assert [tuple(row["key"][:2]) for row in rows] == [key for key in printed for _ in range(2)]
     assert [row["key"][2] for row in rows] == ["B-spline (nielson)", "quartic"] * 6
-    assert [row["cells"][:2] for row in rows[:2]] == [["16", "16"], ["—", "—"]]
+    assert [row["cells"][:2] for row in rows[:2]] == [[("16", "")] * 2, [("—", "")] * 2]
 
 
 def test_a_quick_run_says_so_and_what_the_reference_has(tmp_path: Path) -> None:
     made = Results(tmp_path / "quick")
     frame = Results(REFERENCE).read_table("choosing").assign(run_size="quick")
     frame.loc[frame["scheme"] == "local-quintic", "torque"] = 1.5
+    frame.loc[frame["scheme"] == "squad", ["smooth_k", "smooth_k_worst"]] = np.nan
+    frame.loc[frame["scheme"] == "kim", "worst_failure"] = np.nan
     made.table("choosing", frame, keys=[])
     page = Elements(write_page(made.folder, scenes=[]).read_text(encoding="utf-8"))
     (banner,) = page.with_class("quick")
@@ -113,9 +129,34 @@ def test_a_quick_run_says_so_and_what_the_reference_has(tmp_path: Path) -> None:
     cells = {row["scheme"]: row["cells"] for row in page.data("choices")["rows"]}
     assert cells["local-quintic"]["torque"]["told"] == "1.007"
     assert cells["kim"]["torque"]["told"] == ""
+    assert cells["squad"]["smooth"] == {"text": "—", "order": "", "told": "C¹, at worst C⁰"}
+    assert cells["kim"]["failure"]["text"] == "none found"
+    assert cells["kim"]["failure"]["told"].startswith("solves 0 % of the sets")
     made.table("choosing", frame.assign(run_size="full"), keys=[])
     full = Elements(write_page(made.folder, scenes=[]).read_text(encoding="utf-8"))
     assert not full.with_class("quick")
+
+
+def test_quick_times_and_targets_have_the_reference_s_beside_them(tmp_path: Path) -> None:
+    made = Results(tmp_path / "quick")
+    made.begin(["quatspline", "run"], seed=0)
+    table1, speed = (Results(REFERENCE).read_table(name) for name in ("table1", "speed"))
+    once = table1["protocol"] == "solve-once"
+    made.table("table1", table1.assign(ratio_to_quartic=table1["ratio_to_quartic"] + once))
+    made.table("speed", speed[speed["task"] != "velocity"], keys=[])
+    for name in ("table1", "speed"):
+        made.record(name, {"size": "quick", "seed": 0, "seconds": 1.0, "failure": None})
+    made.finish()
+    folder = Folder(made.folder)
+    cells = side_by_side(folder.frame("table1"), reference(folder, "table1"))[2]["cells"]
+    full = side_by_side(table1)[2]["cells"]
+    assert cells[:-1] == full[:-1]  # what is the same stands once
+    assert cells[-1] == (f"{float(full[-1][0]) + 1:.3g}", full[-1][0])
+    beside = {target[0]: (target[2], other) for target, other in bounds(folder)["rows"]}
+    value, other = beside.pop("orders 0, 1 and 2 of `quartic` over order 0 alone")
+    assert value == ""  # not measured there
+    assert re.fullmatch(r"[\d.]+ x", other)
+    assert {other for _, other in beside.values()} == {""}
 
 
 def test_ids_are_unique(page_folder: Path) -> None:

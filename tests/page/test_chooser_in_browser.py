@@ -33,6 +33,7 @@ def page(opened: Any) -> Opened:
         {"rates": "velocity", "closed": "yes", "safe": "yes"},
         {"large": "yes", "rates": "acceleration"},
         {"holds": "yes"},
+        {"holds": "overshoot"},
     ],
 )
 def test_answers_filter_as_the_conditions_do(
@@ -59,7 +60,9 @@ def test_a_view_is_in_the_address_and_is_restored(page: Opened) -> None:
     assert tab.locator("#chooser select[name=live]").input_value() == "yes"
     assert tab.locator("#chooser th[data-column=time]").get_attribute("aria-sort") == "ascending"
     page("location.hash = '#choosing?closed=yes&holds=never&unknown=1'")
-    tab.wait_for_function("document.querySelector('#chooser select[name=closed]').value === 'yes'")
+    tab.wait_for_function(
+        "() => document.querySelector('#chooser select[name=closed]').value === 'yes'"
+    )
     assert tab.locator("#chooser select[name=holds]").input_value() == ""  # no such answer
     tab.get_by_role("button", name="Clear the answers").click()
     assert page("location.hash") == "#choosing"

@@ -90,7 +90,7 @@ def test_overshoot_is_that_of_the_table(page: Opened) -> None:
     assert page("quatspline.drawing.motion.overshoot('monotone-quintic')") < 1e-6
     assert page("quatspline.drawing.motion.overshoot('squad')") > 5.0
     page.page.wait_for_function(
-        "[...document.querySelectorAll('#drawn .measured tbody tr')].some((row) => "
+        "() => [...document.querySelectorAll('#drawn .measured tbody tr')].some((row) => "
         "row.cells[0].textContent === 'squad' && Number(row.cells[1].textContent) > 5)"
     )
 
@@ -175,6 +175,12 @@ def test_csv_goes_in_and_comes_out(page: Opened, tmp_path: Path) -> None:
         ("0,1,0,0,0\n0,0,1,0,0", "Keyframe 1: its time 0 does not come after 0"),
         ("0,1,0,0,0\n1,0,0,0,0", "Keyframe 1: its quaternion has no length"),
         ("0,1,0,0,0\n1,a,0,0,0", "Keyframe 1: five numbers are expected"),
+        ("0,1,x,0,0\n1,1,0,0,0\n2,0,1,0,0", "Keyframe 0: five numbers are expected"),
+        ("0,1,0,0,0\n1,0,1,,0", "Keyframe 1: five numbers are expected"),
+        ("0,1,0,0,0\n1,0,nan,1,0", "Keyframe 1: five numbers are expected"),
+        ("0,1,0,0,0\n1e300,0,1,0,0", "Keyframe 1: its time 1e+300 is beyond"),
+        ("t,a,b,c\n0,1,0,0\n1,1,0,0", "names no column w, x, y, z"),
+        ("", "Two lines at least"),
     ],
 )
 def test_what_cannot_be_a_curve_is_refused_in_a_sentence(
@@ -184,6 +190,56 @@ def test_what_cannot_be_a_curve_is_refused_in_a_sentence(
     page("text => quatspline.drawing.paste(text)", text)
     assert said in page.page.locator("#drawn .said").inner_text()
     assert page("quatspline.drawing.motion.times") == before
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "0,0.6,0.8,0,0\n1.5,0,0,0,1",
+        "t,x,y,z,w\n0,0.8,0,0,0.6\n1.5,0,0,1,0",
+        "\ufeffTimestamp;qw;qx;qy;qz\r\n0;0,6;0,8;0;0\r\n1,5;0;0;0;1\r\n",
+        "# a comment\n0\t0.6\t0.8\t0\t0\n\n1.5\t0\t0\t0\t1\n",
+        "  0 0.6 0.8 0 0\n1.5  0 0 0 1",
+        "note,t,w,x,y,z\nstart,0,3,4,0,0\nend,1.5,0,0,0,2",
+    ],
+)
+def test_keyframes_are_taken_as_spreadsheets_and_files_have_them(page: Opened, text: str) -> None:
+    page("text => quatspline.drawing.paste(text)", text)
+    assert page.page.locator("#drawn .said").inner_text() == "2 keyframes taken."
+    assert page("quatspline.drawing.motion.times") == [0, 1.5]
+    keys = np.array(page("quatspline.drawing.motion.keyframes"))
+    np.testing.assert_allclose(np.abs(keys), [[0.6, 0.8, 0, 0], [0, 0, 0, 1]], atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    "keys", ["garbage", "", "0,1,0,0,0;0,1,0,0,0", "%E0%A4%A", "0,0,0,0,0;1,1,0,0,0"]
+)
+def test_an_address_without_a_motion_is_told(page: Opened, keys: str) -> None:
+    before = page("quatspline.drawing.motion.times")
+    page("keys => { location.hash = `#draw?a=<b>&keys=${keys}`; }", keys)
+    page.page.wait_for_function(
+        "document.querySelector('#drawn .said').textContent.startsWith('The address holds no motion. ')"
+    )
+    assert page("quatspline.drawing.motion.times") == before
+    assert page("quatspline.drawing.controls.a.value") in SCHEMES
+
+
+def test_times_that_are_close_stay_apart_in_the_address(page: Opened) -> None:
+    times, q = np.array([0.0, 2e-9, 5e-9]), walk(7, 3, 40.0)[1]
+    pasted(page, times, q)
+    page.page.reload()
+    np.testing.assert_allclose(page("quatspline.drawing.motion.times"), times, rtol=1e-5)
+
+
+def test_two_thousand_keyframes_are_drawn(page: Opened) -> None:
+    times, q = walk(8, 2000, 5.0)
+    cost = page(
+        "text => { const t = performance.now(); quatspline.drawing.paste(text); return performance.now() - t; }",
+        "\n".join(",".join(map(str, (t, *key))) for t, key in zip(times, q, strict=True)),
+    )
+    print(f"2,000 pasted keyframes cost {cost:.0f} ms of script")
+    assert page("quatspline.drawing.motion.times.length") == 2000
+    assert page("quatspline.drawing.motion.samples.length") <= 5 * 2000
 
 
 def test_keyframes_are_added_and_removed(page: Opened) -> None:
@@ -198,7 +254,7 @@ def test_keyframes_are_added_and_removed(page: Opened) -> None:
 
 
 def test_script_per_change_is_told(page: Opened, record_property: Any) -> None:
-    """Measured and reported: what a drag costs a frame."""
+    """Measured and reported: what a drag costs per frame."""
     cost = page(
         "(() => { const d = quatspline.drawing, all = [];"
         " for (let i = 0; i < 20; i++) { const t = performance.now();"

@@ -220,6 +220,13 @@ def test_a_table_with_one_column_makes_a_page_or_is_refused_by_name(
     assert status == 0 or told.startswith(f"quatspline: {spoilt / table}.csv: no column ")
 
 
+def test_a_count_that_was_read_as_a_float_is_written_whole() -> None:
+    """A column with gaps is read as floats: Table 1 of schemes among which some were not measured."""
+    assert str(Quote((Cell("t", {"n": 1}, "x", 16.0),), spec="d")) == "16"
+    with pytest.raises(ValueError, match=r"^t\.csv\[n=1\]\.x: "):
+        str(Quote((Cell("t", {"n": 1}, "x", 16.5),), spec="d"))
+
+
 def test_a_quote_of_what_is_no_number_names_its_cell() -> None:
     with pytest.raises(ValueError, match=r"^t\.csv\[n=1\]\.x: "):
         str(Quote((Cell("t", {"n": 1}, "x", "many"),), spec=".3g"))
@@ -371,6 +378,8 @@ def test_positions_of_ones_own_are_followed() -> None:
     still = motion.own_scene("mine", "Mine", keyframes, schemes=["slerp"])
     assert not still.positions(np.array([0.5, 2.0])).any()
     assert motion.player_data(still)["pair"] == ["slerp"]
+    both = motion.own_scene("mine", "Mine", keyframes, schemes=["slerp", "quartic"])
+    assert motion.player_data(both)["pair"] == ["quartic", "slerp"]  # nielson is not offered
 
 
 # -- after a run --------------------------------------------------------------------------------

@@ -51,6 +51,35 @@ def test_every_block_is_on_the_paper_and_none_is_blank(paper: Opened) -> None:
     assert max(widths) <= A4["width"]
 
 
+LEGENDS = """(() => [...document.querySelectorAll('.plot')].flatMap((plot) => {
+  const end = plot.getBoundingClientRect().bottom + 2;
+  return [...plot.querySelectorAll('.legend')].filter((legend) => legend.getBoundingClientRect().bottom > end);
+}).length)()"""
+"""Legends that reach into what follows their plot."""
+
+
+def test_no_legend_lies_over_what_follows(paper: Opened) -> None:
+    for plot in paper.page.query_selector_all(".plot"):
+        paper.page.wait_for_function(
+            "p => p.querySelector('.main-svg, canvas') || p.textContent.includes('WebGL')", arg=plot
+        )
+    assert paper("document.querySelectorAll('.plot .legend').length") > 3
+    assert paper(LEGENDS) == 0
+    heights = paper("[...document.querySelectorAll('.plot .chart')].map((c) => c.layout?.height)")
+    assert set(heights) - {None} == {
+        410
+    }  # not the screen's, at which the browser tells that it will print
+
+
+def test_figures_are_on_the_paper(opened: Any) -> None:
+    page = opened()
+    page("quatspline.figures")  # waits until all are inflated
+    assert (
+        page("[...document.querySelectorAll('img.picture')].map((i) => i.naturalWidth > 100)")
+        == [True] * 2
+    )
+
+
 def test_paper_is_white_and_the_screen_is_as_before(paper: Opened) -> None:
     assert paper("quatspline.theme.look()") == "light"
     paper.page.emulate_media(media="screen")
@@ -88,7 +117,7 @@ def test_the_contents_mark_what_is_being_read(opened: Any) -> None:
     for key in ("accuracy", "claims"):
         page(f"document.getElementById('{key}').scrollIntoView({{behavior: 'instant'}})")
         page.page.wait_for_function(
-            f"document.querySelector('.contents [aria-current]').getAttribute('href') === '#{key}'"
+            f"() => document.querySelector('.contents [aria-current]').getAttribute('href') === '#{key}'"
         )
 
 

@@ -210,7 +210,7 @@ def test_keys_and_clicks_move_through_time(page: Opened) -> None:
     turns = page("quatspline.replay.views.map((view) => view.turn)")
     assert turns[0] == turns[1]
     tab.keyboard.press("Space")
-    tab.wait_for_function(f"{POSE}.time > 0.4")
+    tab.wait_for_function(f"() => {POSE}.time > 0.4")
     tab.keyboard.press("Space")
     assert not page("quatspline.replay.playing")
     tab.keyboard.press("Home")

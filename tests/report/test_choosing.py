@@ -293,7 +293,7 @@ def test_names_in_the_figure_keep_apart(module, folder: Path) -> None:
     cost |= dict.fromkeys(("exps", "logs", "slerps"), 1)
     Results(folder, force=True).table("cost", pd.DataFrame(cost))
     table = module.derive(Run(quick=True), reader(folder))
-    with style.house():
+    with style.applied():
         axes = module.draw(table).axes[0]
     assert {text.get_text() for text in axes.texts} == set(map(called, names))
     boxes = [text.get_window_extent() for text in axes.texts]
@@ -302,6 +302,6 @@ def test_names_in_the_figure_keep_apart(module, folder: Path) -> None:
 
 def test_schemes_of_infinite_energy_are_not_drawn(module, folder: Path) -> None:
     table = module.derive(Run(quick=True), reader(folder))
-    with style.house():
+    with style.applied():
         names = {text.get_text() for text in module.draw(table).axes[0].texts}
     assert names == {"quartic", called("local-quintic")}

@@ -26,6 +26,7 @@ from quatspline.options import declared_by
 from quatspline.page.glossary import column
 from quatspline.runs.experiment import files
 from quatspline.segments import SegmentCurve
+from tools.derivations import PREFIX, SHOWN, drawn
 from tools.new_scheme import COMPILED, new_scheme
 from tools.readme import DOCS, QUOTING, REFERENCE, ROBOT, ROOT, compare_block, derivations
 from tools.robot import robot
@@ -86,6 +87,28 @@ def test_pictures_exist_and_are_described(file: Path) -> None:
     pictures = re.findall(r"!\[([^\]]*)\]\(([^)]+)\)", file.read_text(encoding="utf-8"))
     assert all(text for text, _ in pictures)
     assert all((file.parent / place).stat().st_size > 10_000 for _, place in pictures)
+
+
+def test_every_derivation_has_its_picture() -> None:
+    pages = set(derivations().values())
+    assert {page.stem for page in pages} == SHOWN.keys()
+    for page in pages:
+        text = page.read_text(encoding="utf-8")
+        assert text.count(f"](../images/{PREFIX}{page.stem}.png)") == 1, page.name
+
+
+@pytest.mark.parametrize("page", sorted(SHOWN))
+def test_a_derivation_shows_what_it_derives(page: str) -> None:
+    """Its scheme's blending functions, which add up to 1 where as many keyframes as are drawn shape a segment."""
+    shown = SHOWN[page]
+    assert derivations()[shown.scheme].stem == page
+    left, right = drawn(shown).axes
+    lines = [np.asarray(line.get_ydata()) for line in left.lines]
+    assert len(lines) == shown.around
+    scheme = qs.scheme(shown.scheme)
+    if scheme.support == shown.around and not shown.cumulative:
+        np.testing.assert_allclose(np.sum(lines, axis=0), 1.0, atol=1e-12)
+    assert all(np.isfinite(np.asarray(line.get_ydata(), float)).all() for line in right.lines)
 
 
 def test_the_readme_is_short() -> None:

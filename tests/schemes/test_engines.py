@@ -15,7 +15,7 @@ from quatspline.engines import engine, plain
 from quatspline.families.arcs import SIZE, acceleration, near_point, velocity
 from quatspline.kernels.family import family as made_family
 from quatspline.kernels.jit import compiled, fit_kernel
-from quatspline.segments import CHUNK, FITTED, SegmentCurve
+from quatspline.segments import CHUNK, FITTED, LAZY, SegmentCurve
 from walks import applies, count_of, inside, knots_of, walk
 
 AGREE, REPEATED, MANY = 1e-13, 1e-11, 10
@@ -158,7 +158,7 @@ def test_windows_of_a_long_curve_count_where_they_are_fitted(automatic, monkeypa
     """Nothing before, so that a look costs no compiling; then each, until they repay it."""
     for name in ("REPAYS", "LOADS"):
         monkeypatch.setattr(engine, name, 2.5 * FITTED * CHUNK)
-    curve = fresh_scheme()(None, np.tile([1.0, 0.0, 0.0, 0.0], (5 * CHUNK, 1)))
+    curve = fresh_scheme()(None, np.tile([1.0, 0.0, 0.0, 0.0], (LAZY + 2, 1)))
     assert curve.fit_kernel.work == 0.0
     machine = []
     for chunk in range(4):

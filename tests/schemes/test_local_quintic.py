@@ -71,7 +71,7 @@ def test_a_closed_curve_is_an_open_one_of_more_turns() -> None:
 
 @pytest.mark.parametrize("degrees", [10, 60, 110, 119, 125, 150, 170, 179])
 def test_constant_spin(degrees: int) -> None:
-    """Exact beyond 119 degrees a step too: a window that would fold has no share."""
+    """Exact beyond 119 degrees per step too: a window that would fold has no share."""
     t = uneven(12)
     t /= np.diff(t).max()
     rate = np.radians(degrees)

@@ -51,7 +51,7 @@ def test_natural_ends_have_no_acceleration() -> None:
 
 
 def test_the_fold_is_shown() -> None:
-    """Nine keyframes turning about z: 40 degrees a step stay in the chart, 50 leave it."""
+    """Nine keyframes turning about z: 40 degrees per step stay in the chart, 50 leave it."""
     t = np.arange(9.0)
     tilt = quaternion.exp(0.05 * np.random.default_rng(1).normal(size=(9, 3)))
     s = np.linspace(0.0, 8.0, 401)

@@ -13,6 +13,7 @@ import quatspline as qs
 from golden import GOLDEN, KNOTS, Q, assert_golden_new, new_entries
 from quatspline import quaternion
 from quatspline.families.nearest_rotation import by_three, by_two
+from quatspline.fitting import frame_splines
 from quatspline.instruments.frame_error import frame_error
 from quatspline.kernels.values import Mat, Vec
 from quatspline.quaternion import FloatArray
@@ -343,3 +344,14 @@ def test_a_frame_carries_no_sign() -> None:
     t = np.linspace(0.0, 5.0, 31)
     long, short = (qs.build("moving-frame", None, x, align=False) for x in (flipped, q))
     assert apart(long(t), short(t)) < 1e-14
+
+
+@pytest.mark.parametrize("degree", [3, 9])
+@pytest.mark.parametrize("chunk", [1, 4, 11])
+def test_constants_do_not_depend_on_how_many_are_made_at_once(
+    degree: int, chunk: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    t, q = uneven(12), np.stack([walk(12, 60.0, seed) for seed in (1, 2)], axis=1)
+    whole = qs.build("moving-frame", t, q, degree=degree).segments
+    monkeypatch.setattr(frame_splines, "CHUNK", chunk)
+    np.testing.assert_array_equal(qs.build("moving-frame", t, q, degree=degree).segments, whole)

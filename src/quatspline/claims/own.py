@@ -11,7 +11,7 @@ from quatspline.peers.wrapping import PeerCurve
 from quatspline.quaternion import FloatArray
 
 SAMPLES = 4
-"""Samples a segment, inside."""
+"""Samples per segment, inside."""
 
 RATES = {1: "omega", 2: "alpha"}
 

@@ -31,7 +31,7 @@ MANY = 41
 """Keyframes on which support is measured: a decay of 0.27 a segment dies out before the ends."""
 
 SAMPLES = 8
-"""Samples a segment."""
+"""Samples per segment."""
 
 CONSTANT = 1e-8
 """Departures from a constant spin below this share of a step are none: acos loses that much."""

@@ -1,4 +1,4 @@
-"""The command ``compare``: table, figures, a recommendation and a page on somebody's own keyframes, in a folder."""
+"""The command ``compare``: table, figures, a recommendation and a page on a user's own keyframes, in a folder."""
 
 from __future__ import annotations
 
@@ -167,7 +167,7 @@ def _drawn(
 
     mpl.use("Agg")  # nothing here may open a window
     names = shown(table, needs)[: comparison.CURVES]
-    with style.house():
+    with style.applied():
         results.figure("compare", comparison.bars(table))
         results.figure("rates", comparison.rates({name: curves[name] for name in names}, keyframes))
     results.text("compare.caption.txt", BARS)

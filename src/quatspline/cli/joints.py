@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from quatspline.cli.ranking import ROWS, more
 from quatspline.engines.engine import always_compiled
 from quatspline.system.stdout import say
 
@@ -160,7 +161,7 @@ def _drawn(results: Results, table: pd.DataFrame, joints: pd.DataFrame) -> None:
     if joints.empty:
         return
     mpl.use("Agg")  # nothing here may open a window
-    with style.house():
+    with style.applied():
         results.figure(NAME, kept.spans(table))
         results.figure(JOINTS, kept.by_joint(joints, chosen(table, "rms_median")[:DRAWN]))
     results.text(f"{NAME}.caption.txt", SPANS)
@@ -168,19 +169,23 @@ def _drawn(results: Results, table: pd.DataFrame, joints: pd.DataFrame) -> None:
 
 
 def _lines(table: pd.DataFrame) -> list[str]:
-    """A line for each scheme that was measured, and one of each that was not."""
+    """The best schemes, a line each, and one line about the others."""
     import numpy as np
 
     from quatspline.catalogue import called
 
-    table = table.assign(scheme=table["scheme"].map(called))
-    measured = table[table["failure"].isna()]
-    width = int(table["scheme"].str.len().max())
+    best = table[table["failure"].isna()].head(ROWS)
+    names = [called(name) for name in best["scheme"]]
+    width = max(map(len, [*names, "scheme"]))
     lines = [f"{'scheme':{width}}  median    worst     largest (degrees at frames left out)"]
-    for row in measured.to_dict("records"):
-        angles = [np.degrees(row[name]) for name in ("rms_median", "rms_worst", "largest")]
-        told = "  ".join(f"{angle:<8.4g}" for angle in angles)
-        where = f"{row['worst_joint']}, {row['largest_joint']}"
-        lines.append(f"{row['scheme']:{width}}  {told} {where}")
-    lost = table[table["failure"].notna()].to_dict("records")
-    return lines + [f"{row['scheme']:{width}}  n/a: {row['failure']}" for row in lost]
+    for name, row in zip(names, best.to_dict("records"), strict=True):
+        angles = [np.degrees(row[column]) for column in ("rms_median", "rms_worst", "largest")]
+        shown = "  ".join(f"{angle:<8.4g}" for angle in angles)
+        lines.append(f"{name:{width}}  {shown} {row['worst_joint']}, {row['largest_joint']}")
+    return [*(lines if len(best) else []), *_others(table[~table["scheme"].isin(best["scheme"])])]
+
+
+def _others(left: pd.DataFrame) -> list[str]:
+    """Why the other schemes are not among the best, in one line."""
+    failed = left["failure"].notna()
+    return list(more(["not measured" if missing else "ranked lower" for missing in failed]))

@@ -1,4 +1,4 @@
-"""One line a table: what a run ends with."""
+"""One line per table: what a run ends with."""
 
 from __future__ import annotations
 

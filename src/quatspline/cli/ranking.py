@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -92,14 +92,16 @@ def _number(value: float) -> str:
 def _others(frame: pd.DataFrame, rows: list[Row], needs: Needs) -> Iterator[str]:
     """Why the other schemes do not stand in the table, in one line."""
     shown = {row["scheme"] for row in rows[:ROWS]}
-    left = frame[~frame["scheme"].isin(shown)]
-    if len(left):
-        why = Counter(_reason(row, needs) for row in records(left))
-        told = ", ".join(f"{count} {reason}" for reason, count in why.most_common())
-        said = (
-            f": {told}" if len(why) > 1 else f", {'all ' if len(left) > 1 else ''}{next(iter(why))}"
-        )
-        yield f"{len(left)} more on the page{said}."
+    return more([_reason(row, needs) for row in records(frame[~frame["scheme"].isin(shown)])])
+
+
+def more(reasons: Sequence[str]) -> Iterator[str]:
+    """One line about schemes that only the page shows, by the reason of each; none where there are none."""
+    if reasons:
+        why = Counter(reasons)
+        counts = ", ".join(f"{count} {reason}" for reason, count in why.most_common())
+        every = f", {'all ' if len(reasons) > 1 else ''}{reasons[0]}"
+        yield f"{len(reasons)} more on the page{f': {counts}' if len(why) > 1 else every}."
 
 
 def _reason(row: Row, needs: Needs) -> str:

@@ -207,7 +207,7 @@ def _draw(module: ModuleType, table: pd.DataFrame, name: str, results: Results) 
 
     mpl.use("Agg")  # nothing here may open a window
     try:
-        with style.house():
+        with style.applied():
             results.figure(name, module.draw(table))
     finally:
         if "matplotlib.pyplot" in sys.modules:

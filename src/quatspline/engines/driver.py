@@ -106,7 +106,7 @@ def fit_tracks(address, tracks, h, closed, signs, parameters, segments, report, 
 def sample(address, order, curve, origin, slack, t, out):
     """Evaluate all tracks at t (m,) into out (m * K * width,); the first bad index, or -1.
 
-    ``curve`` as made by `described`: one array, because each costs a call a tenth of a microsecond.
+    ``curve`` as made by `described`: one array, because each adds a tenth of a microsecond to a call.
     """
     count, tracks, closed = curve[COUNT], curve[TRACKS], curve[CLOSED] != 0
     knots = carray(at_address(curve[KNOTS]), (count + 1,))

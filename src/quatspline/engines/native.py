@@ -30,7 +30,7 @@ def largest_misses(kernel: Kernel, *arguments: Any) -> FloatArray:
 
 
 def sampler() -> Callable[..., int]:
-    """The driver itself: one call through another costs a sample a tenth of its time."""
+    """The driver itself: one call through another adds a tenth to the time per sample."""
     sample: Callable[..., int] = machine(driver.sample)
     return sample
 

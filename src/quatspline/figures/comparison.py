@@ -1,4 +1,4 @@
-"""Figures of a comparison on somebody's own keyframes."""
+"""Figures of a comparison on a user's own keyframes."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def spans(table: pd.DataFrame) -> Figure:
-    """A scheme a row, the best on top: from the joints' median to the worst joint, and the largest angle."""
+    """One row per scheme, the best on top: from the joints' median to the worst joint, and the largest angle."""
     rows = table[table["rms_median"].notna()]
     fig, panels = style.axes(style.COLUMN, 0.7 + ROW * max(len(rows), 3))
     ax = panels[0, 0]

@@ -36,7 +36,7 @@ class Family(NamedTuple):
 FAMILIES = (
     Family((RED,), ("quartic", "quintic")),
     Family(("#5d3a9b",), ("local-quintic", "monotone-quintic", "smoothing-spline")),
-    Family((BLUE,), ("nielson", "kim", "spherical-average")),
+    Family((BLUE,), ("nielson", "kim", "spherical-average", "least-squares")),
     Family(("#96690a",), ("min-torque",)),
     Family(
         ("#6f6f6f", "#8c7853", "#5c7a8c", "#87627f"),
@@ -84,12 +84,6 @@ FAMILIES = (
 
 OTHER = "#7a4a2b"
 """The colour of schemes that no family names."""
-
-LEADING = (
-    *("quartic", "quintic", "local-quintic", "monotone-quintic"),
-    *("nielson", "kim", "squad", "slerp"),
-)
-"""Schemes that a plot of many shows in colour at first, the others in grey."""
 
 
 @cache

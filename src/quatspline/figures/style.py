@@ -19,8 +19,8 @@ __all__ = [
     "PALETTE",
     "RC",
     "RED",
+    "applied",
     "axes",
-    "house",
     "legend_of",
     "letters",
     "scheme_style",
@@ -60,8 +60,8 @@ RC: Any = {
 
 
 @contextmanager
-def house() -> Iterator[None]:
-    """The house style, for all that is drawn and saved inside."""
+def applied() -> Iterator[None]:
+    """This style, for all that is drawn and saved inside."""
     with mpl.rc_context(RC):
         yield
 

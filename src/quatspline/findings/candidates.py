@@ -19,6 +19,7 @@ from quatspline.comparing import MET
 from quatspline.findings.needs import Needs, reach
 from quatspline.findings.questions import Filter
 from quatspline.instruments.trials import Row, records
+from quatspline.options import declared_by
 
 STILL = 0.01
 """Degrees within which a body that holds stands still."""
@@ -61,14 +62,16 @@ def through(rows: pd.DataFrame, _: Row) -> pd.Series:
 
 
 def near(rows: pd.DataFrame, _: Row) -> pd.Series:
-    """Those that smooth keyframes which are told to be noisy: they say that they do not interpolate."""
+    """Those that smooth keyframes which are told to be noisy: not interpolating, and told its size."""
     noisy = rows["failure"].isna() & (rows["noise"] > 0.0) & (rows["continuity"] >= 2)
     return noisy & rows["scheme"].map(_smooths)
 
 
 def _smooths(name: str) -> bool:
     item = found().get(name)
-    return item is not None and item.scheme is not None and not item.scheme.interpolates
+    if item is None or item.scheme is None or item.scheme.interpolates:
+        return False
+    return "noise" in declared_by(item.scheme)  # fewer knots lessen noise too, whatever its size
 
 
 def still(rows: pd.DataFrame, _: Row) -> Any:
@@ -147,4 +150,4 @@ def _levels(rows: pd.DataFrame, level: int) -> Iterator[pd.DataFrame]:
 
 
 CANDIDATES = candidates(Needs())
-"""Those of somebody who asks for nothing."""
+"""Those of a user who asks for nothing."""

@@ -1,4 +1,4 @@
-"""Warnings about keyframes: what somebody has to know of them before any scheme is advised, with its numbers."""
+"""Warnings about keyframes: what a user has to know about them before any scheme is advised, with its numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The questions of somebody who has to take a scheme, as conditions on a table with one row a scheme.
+"""The questions of a user who has to choose a scheme, as conditions on a table with one row per scheme.
 
 They are asked in three places, from here: `docs/choosing.md` has a heading for each, `decisions` takes its
 conditions from them, and the page's chooser filters by them in the browser, which gets them as JSON.
@@ -68,6 +68,7 @@ KEEPS = Condition("keeps_smooth", "=", YES)
 SOLVES_NOTHING = Condition("iterates", "=", NO)
 FAULTLESS = Condition("faults", "=", NO)
 STILL = Condition("wander", "<=", HOLDS_STILL)
+NO_OVERSHOOT = Condition("overshot", "<=", 0.0)
 
 CHOICES: tuple[Choice, ...] = (
     Choice(
@@ -86,5 +87,12 @@ CHOICES: tuple[Choice, ...] = (
     Choice("closed", "Must it run closed?", (Answer(YES, YES, (CLOSES,)),)),
     Choice("safe", "Must it never fail?", (Answer(YES, YES, (MEETS, SOLVES_NOTHING, FAULTLESS)),)),
     Choice("large", "Are steps larger than 90 degrees?", (Answer(YES, YES, (MEETS, KEEPS)),)),
-    Choice("holds", "Does the body hold still between keyframes?", (Answer(YES, YES, (STILL,)),)),
+    Choice(
+        "holds",
+        "Must it hold still between keyframes, or never overshoot?",
+        (
+            Answer(YES, "hold still", (STILL,)),
+            Answer("overshoot", "hold still, and overshoot no step", (STILL, NO_OVERSHOOT)),
+        ),
+    ),
 )

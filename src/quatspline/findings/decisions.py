@@ -1,4 +1,4 @@
-"""Choosing: which schemes are on a Pareto front, and what follows for somebody who has to take one.
+"""Choosing: which schemes are on a Pareto front, and what follows for a user who has to choose one.
 
 Works on a table with one row per scheme, from whichever measurements it was made; a column that is not there
 or is empty leaves out what would rest on it.

@@ -9,7 +9,7 @@ from typing import Any
 
 import pandas as pd
 
-from quatspline.findings import decisions, recorded, reproduction
+from quatspline.findings import decisions, naive, recorded, reproduction
 from quatspline.findings.lists import joined, listed, numbered
 from quatspline.findings.quotes import Cell, Ledger, Part, Quote, Reader, Span, said
 from quatspline.instruments.summary import ALL
@@ -216,6 +216,7 @@ FINDINGS: tuple[tuple[str, Callable[[Ledger], tuple[Part, ...]]], ...] = (
     *reproduction.SENTENCES,
     ("accuracy", _orders),
     ("fairness", _torque),
+    *naive.SENTENCES,
     ("slerp-variants", _variants),
     ("denoise", _smoothing),
     ("denoise", _unsmoothed),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from quatspline.findings import naive
 from quatspline.findings.findings import Finding
 from quatspline.findings.quotes import Cell, Ledger, Part, Quote, Reader, said
 from quatspline.findings.recorded import ALLOWED, EVERY, RAW, whose
@@ -101,6 +102,7 @@ def _span(cells: list[Cell]) -> tuple[Quote, Quote]:
 HEADLINES: tuple[tuple[str, Callable[[Ledger], tuple[Part, ...]]], ...] = (
     ("protocol", _speed),
     ("fairness", _local),
+    ("fairness", naive.headline),
     ("reconstruct", _recorded),
     ("excursion", _holds),
     ("denoise", _noise),

@@ -1,4 +1,4 @@
-"""Needs: what somebody cannot do without in a curve, which schemes have it, and what the others break."""
+"""Needs: what a user cannot do without in a curve, which schemes have it, and what the others break."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Questions over a table with one row per scheme: which rows qualify, which of them is best, and how that is said.
 
-`recommendation` asks them of a comparison on somebody's keyframes, `decisions` of a folder of results.
+`recommendation` asks them of a comparison on a user's keyframes, `decisions` of a folder of results.
 """
 
 from __future__ import annotations

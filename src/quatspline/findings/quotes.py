@@ -80,8 +80,11 @@ class Quote:
         return next((cell for cell in self.cells if cell.value == self.value), self.cells[0])
 
     def __str__(self) -> str:
+        value = self.value
+        if self.spec == "d" and isinstance(value, float) and value.is_integer():
+            value = int(value)  # of a column with gaps, whose counts are read as floats
         try:
-            return format(self.value, self.spec)
+            return format(value, self.spec)
         except (TypeError, ValueError) as error:  # text where a number is expected
             raise ValueError(f"{self.cells[0]}: {error}") from error
 

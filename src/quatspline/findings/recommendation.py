@@ -1,4 +1,4 @@
-"""What a comparison on somebody's keyframes recommends, and why: the questions asked of it, and their wording."""
+"""What a comparison on a user's keyframes recommends, and why: the questions it answers, and their wording."""
 
 from __future__ import annotations
 

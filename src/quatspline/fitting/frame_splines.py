@@ -20,6 +20,9 @@ from quatspline import quaternion
 from quatspline.fitting.end_conditions import expanded
 from quatspline.quaternion import FloatArray
 
+CHUNK = 4096
+"""Segments whose constants are made at once: what they are made of takes several times their memory."""
+
 Rates = tuple[FloatArray | None, FloatArray | None]
 """Body velocity and acceleration (K, 3) at an end, where they are given."""
 
@@ -77,6 +80,14 @@ def _exponential(x: list[FloatArray], count: int) -> list[FloatArray]:
 
 def constants(spline: Any, t: FloatArray, q: FloatArray, axes: FloatArray) -> FloatArray:
     """Constants (K, segments, ...) of `families.frames`: the middle of each arc, and B seen from there."""
+    made = np.empty((q.shape[1], len(t) - 1, 4 + 9 * (spline.k + 1)))
+    for start in range(0, len(t) - 1, CHUNK):
+        part = slice(start, start + CHUNK + 1)
+        made[:, start : start + CHUNK] = _constants(spline, t[part], q[part], axes[part])
+    return made
+
+
+def _constants(spline: Any, t: FloatArray, q: FloatArray, axes: FloatArray) -> FloatArray:
     h = np.diff(t)[:, None, None, None]
     middle = quaternion.normalise(q[:-1] + q[1:])
     powers = [spline(t[:-1], m) * h**m / math.factorial(m) for m in range(2, spline.k + 1)]
@@ -84,4 +95,4 @@ def constants(spline: Any, t: FloatArray, q: FloatArray, axes: FloatArray) -> Fl
     rows = np.stack([axes[:-1], axes[1:] - axes[:-1], *bends], axis=2)
     seen = quaternion.rotate(quaternion.conj(middle)[:, :, None, None], rows)
     flat = seen.reshape(*seen.shape[:2], -1)
-    return np.ascontiguousarray(np.moveaxis(np.concatenate([middle, flat], axis=-1), 1, 0))
+    return np.moveaxis(np.concatenate([middle, flat], axis=-1), 1, 0)

@@ -6,6 +6,8 @@ With 8 Gauss points u_g a segment the sum
     E = sum_s sum_g w_g h_s |alpha_s(u_g)|^2                                                     (1)
 
 is a sum of squares; its normal equations couple neighbouring nodes only: a band of 18 [barr1992].
+Of their matrix, row by row, what is left of the diagonal is kept, from the node before on: 126 numbers
+a node, in which Cholesky's factor takes the matrix's place.
 """
 
 from __future__ import annotations
@@ -36,8 +38,11 @@ SHIFTS, SHARES = np.array([-2.0, -1.0, 1.0, 2.0]), np.array([1.0, -8.0, 8.0, -1.
 ROUNDING = 1e-12
 """A relative rise of E that is no rise."""
 
-BAND = 18
-"""Unknowns of a segment: two nodes with a turn, v and a each."""
+NODE, BAND = 9, 18
+"""Unknowns of a node, a turn, v and a, and of a segment, which has two nodes."""
+
+PACKED = NODE * NODE + NODE * (NODE + 1) // 2
+"""Numbers of the matrix that belong to a node: its block with the node before, and half of its own."""
 
 STALL, FLAT = 8, 1e-15
 """Updates without a least change so far, and the share of E that the last of them would have gained by the gradient,
@@ -73,26 +78,21 @@ def minimise(nodes, rates, h, m, tolerance, limit, segments, report):
 
 @compiled
 def _minimise(q, x, h, m, tolerance, limit, report):
-    n = 9 * q.shape[0]
-    matrix, band, gradient, step = (
-        np.empty((n, BAND)),
-        np.empty((n, BAND)),
-        np.empty(n),
-        np.empty(n),
-    )
+    n = NODE * q.shape[0]
+    matrix, gradient, step = np.empty(PACKED * q.shape[0]), np.empty(n), np.empty(n)
     trial_q, trial_x = q.copy(), x.copy()
     energy = _energy(q, x, h)
     damping, change, done = 0.0, np.inf, 0
     least, least_at, rest = np.inf, 0, False
     while done < limit:
-        _normal_equations(q, x, h, m, matrix, gradient)
         accepted = False
         while not accepted and damping < STUCK:
-            _copy(matrix.ravel(), band.ravel())
-            for i in range(band.shape[0]):
-                band[i, 0] *= 1.0 + damping
+            # Factorised in place, and so made again after a refused step: a copy would double the memory.
+            _normal_equations(q, x, h, m, matrix, gradient)
+            for i in range(n):
+                matrix[_row(i) + i] *= 1.0 + damping
             _copy(gradient, step)
-            if _solve_band(band, step):
+            if _solve_band(matrix, step):
                 change = _move(q, x, h, step, trial_q, trial_x)
                 trial = _energy(trial_q, trial_x, h)
                 accepted = trial <= (1.0 + ROUNDING) * energy or change <= tolerance
@@ -153,9 +153,22 @@ def _energy(q, x, h):
     return total
 
 
+@inlined
+def _first(i):
+    """The first column of row i that is kept."""
+    return max(0, NODE * (i // NODE - 1))
+
+
+@inlined
+def _row(i):
+    """Where row i would begin in the packed matrix, were it kept from column 0 on."""
+    node, a = i // NODE, i % NODE
+    return PACKED * node + NODE * a + a * (a + 1) // 2 - NODE * (node - 1)
+
+
 @compiled
 def _normal_equations(q, x, h, m, matrix, gradient):
-    """J^T J, row i and column i - d at [i, d], and -J^T r; the turns of keyframes are fixed."""
+    """J^T J, row i and column j at _row(i) + j, and -J^T r; the turns of keyframes are fixed."""
     matrix.fill(0.0)
     gradient.fill(0.0)
     y, r, scratch = np.empty(15), np.empty(24), np.empty(SIZE)
@@ -165,18 +178,24 @@ def _normal_equations(q, x, h, m, matrix, gradient):
         _residuals(y, h[i], scratch, r)
         _jacobian(y, h[i], scratch, jacobian)
         for a in range(BAND):
-            row = 9 * i + a
+            row = NODE * i + a
             gradient[row] -= np.sum(jacobian[a] * r)
             for b in range(a + 1):
-                matrix[row, a - b] += np.sum(jacobian[a] * jacobian[b])
-    for row in range(gradient.size):
-        if row % 9 < 3 and (row // 9) % m == 0:
-            gradient[row] = 0.0
-            for d in range(BAND):
-                matrix[row, d] = 0.0
-                if row + d < gradient.size:
-                    matrix[row + d, d] = 0.0
-            matrix[row, 0] = 1.0
+                matrix[_row(row) + NODE * i + b] += np.sum(jacobian[a] * jacobian[b])
+    for i in range(0, q.shape[0], m):
+        for row in range(NODE * i, NODE * i + 3):
+            _fix(row, matrix, gradient)
+
+
+@compiled
+def _fix(row, matrix, gradient):
+    """Make an unknown's equation say that it does not move."""
+    gradient[row] = 0.0
+    for j in range(_first(row), row):
+        matrix[_row(row) + j] = 0.0
+    for i in range(row + 1, min(NODE * (row // NODE) + BAND, gradient.size)):
+        matrix[_row(i) + row] = 0.0
+    matrix[_row(row) + row] = 1.0
 
 
 @compiled
@@ -203,27 +222,26 @@ def _jacobian(y, h, scratch, jacobian):
 
 @compiled
 def _solve_band(a, b):
-    """Cholesky's solution in place, a in lower band form; False where a is not definite."""
-    n = b.size
-    for i in range(n):
-        for d in range(min(i, BAND - 1), -1, -1):
-            j = i - d
-            total = a[i, d]
-            for k in range(max(0, i - BAND + 1, j - BAND + 1), j):
-                total -= a[i, i - k] * a[j, j - k]
-            if d > 0:
-                a[i, d] = total / a[j, 0]
-            elif total > 0.0:
-                a[i, 0] = math.sqrt(total)
-            else:
-                return False
-        for d in range(1, min(i, BAND - 1) + 1):
-            b[i] -= a[i, d] * b[i - d]
-        b[i] /= a[i, 0]
-    for i in range(n - 1, -1, -1):
-        b[i] /= a[i, 0]
-        for d in range(1, min(i, BAND - 1) + 1):
-            b[i - d] -= a[i, d] * b[i]
+    """Cholesky's solution in place, a packed as by `_row`; False where a is not definite."""
+    for i in range(b.size):
+        first, row = _first(i), _row(i)
+        for j in range(first, i):
+            other = _row(j)
+            for k in range(first, j):  # at or after what is kept of row j
+                a[row + j] -= a[row + k] * a[other + k]
+            a[row + j] /= a[other + j]
+        for k in range(first, i):
+            a[row + i] -= a[row + k] * a[row + k]
+        if not a[row + i] > 0.0:
+            return False
+        a[row + i] = math.sqrt(a[row + i])
+        for j in range(i - 1, first - 1, -1):
+            b[i] -= a[row + j] * b[j]
+        b[i] /= a[row + i]
+    for i in range(b.size - 1, -1, -1):
+        b[i] /= a[_row(i) + i]
+        for j in range(i - 1, _first(i) - 1, -1):
+            b[j] -= a[_row(i) + j] * b[i]
     return True
 
 

@@ -31,6 +31,9 @@ from quatspline.kernels.values import norm, unit
 HALF = 2.5
 """Of l: what an end may have of (1)'s middle."""
 
+AHEAD, WITHIN = 24, 8
+"""How often `forward` and `clipped` are applied: once leaves a part of what leads back, off one axis."""
+
 GRADUAL = 3.0
 """How many times faster than v the least d rises with it."""
 
@@ -96,8 +99,14 @@ def monotone(v, a, s0, s1, h0, h1, strict, slack):
     """v and a of a keyframe between the slopes s0 and s1, limited; not ``strict``, in length only."""
     n, p, l0, l1 = unit(s0), unit(s1), norm(s0), norm(s1)
     if strict:
-        v = forward(v, n, p)
+        for _ in range(AHEAD):
+            if v @ n >= 0.0 and v @ p >= 0.0:
+                break
+            v = forward(v, n, p)
     v, a = bounded(v, a, l0, l1, h0, h1, slack)
     if strict:
-        a = clipped(a, v, n, p, l0, l1, h0, h1, slack)
+        for _ in range(WITHIN):
+            given, a = a, clipped(a, v, n, p, l0, l1, h0, h1, slack)
+            if (a - given) @ (a - given) == 0.0:
+                break
     return v, a

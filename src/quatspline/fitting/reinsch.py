@@ -173,11 +173,11 @@ def normal(columns, e, d, iw, place, closed, flat_r, share, factor, band, rhs):
             for y in range(x + 1):
                 if rows[y] >= 0:
                     other = transposed(_block(columns[c], 9 * y))
-                    _add_block(band, rows[x], rows[y], (factor * iw[c]) * (one * other))
+                    add_block(band, rows[x], rows[y], (factor * iw[c]) * (one * other))
 
 
 @inlined
-def _add_block(band, i, j, m):
+def add_block(band, i, j, m):
     """Add the 3x3 block of rows i and columns j, and its transpose."""
     if i < j:
         i, j, m = j, i, transposed(m)

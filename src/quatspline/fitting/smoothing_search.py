@@ -57,13 +57,15 @@ class Search:
     ----------
     problem : what is solved
     limit : updates that a solve may take
-    solved : solutions along the grid so far; one that did not converge ends them
+    solved : smoothed keyframes (n, 4) along the grid so far; a solve that did not converge ends them
+    left : rss of each
     spent : tr / n of each
     """
 
     problem: Smoothing
     limit: int
-    solved: list[Solution] = field(default_factory=list)
+    solved: list[FloatArray] = field(default_factory=list)
+    left: list[float] = field(default_factory=list)
     spent: list[float] = field(default_factory=list)
 
     def least(self, *criteria: Criterion) -> tuple[float, FloatArray]:
@@ -71,14 +73,14 @@ class Search:
         exponent = min(self._exponent(criterion) for criterion in criteria)
         nearest = round((exponent - EXPONENTS[0]) / (EXPONENTS[1] - EXPONENTS[0]))
         known = nearest < len(self.solved)
-        return self._weight(exponent), self.solved[nearest].state.r if known else self.problem.q
+        return self._weight(exponent), self.solved[nearest] if known else self.problem.q
 
     def _exponent(self, criterion: Criterion) -> float:
         values: list[float] = []
         best = 0
         while self._reaches(len(values)):
             k = len(values)
-            rss = self.solved[k].state.rss / (3 * len(self.problem.q))
+            rss = self.left[k] / (3 * len(self.problem.q))
             values.append(criterion(rss, self.spent[k]))
             best = k if values[k] < values[best] else best
             rising = k >= RISES and all(
@@ -95,10 +97,11 @@ class Search:
         if k >= EXPONENTS.size:
             return False
         weight = self._weight(float(EXPONENTS[k]))
-        start = self.solved[-1].state.r if self.solved else self.problem.q
+        start = self.solved[-1] if self.solved else self.problem.q
         found = self.problem.solve(weight, COARSE, self.limit, start)
         if found.converged:
-            self.solved.append(found)
+            self.solved.append(found.state.r)
+            self.left.append(found.state.rss)
             self.spent.append(self.problem.trace(weight) / len(self.problem.q))
         return found.converged
 

@@ -105,7 +105,7 @@ def _numbers(given: Any) -> Any:
 
 
 def _listed(given: Any) -> list[Any]:
-    """The quaternions of a list of Rotations, one a keyframe (or one a track)."""
+    """The quaternions of a list of Rotations, one per keyframe (or one per track)."""
     for i, item in enumerate(given):
         if not hasattr(item, "as_quat"):
             raise ValueError(f"quaternions[{i}] is no Rotation, as quaternions[0] is: {item!r}")

@@ -15,7 +15,7 @@ from quatspline.quaternion import FloatArray
 from quatspline.trajectories.smooth import INNER, SPAN, tumble, tumble_rates
 
 SAMPLES = 8
-"""Samples a segment, in its interior: enough to see the largest error to a few per cent."""
+"""Samples per segment, in its interior: enough to see the largest error to a few per cent."""
 
 ERRORS = {"inner_angle": "", "inner_omega": "_omega", "inner_alpha": "_alpha"}
 """Errors that orders are read from, with the suffix of their columns."""

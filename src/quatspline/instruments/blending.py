@@ -6,6 +6,8 @@ turned by theta shows its own blending function: B_j = ln Q / theta.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 
@@ -19,20 +21,23 @@ PADDING = 4
 """Keyframes on either side, so that no end is felt."""
 
 
-def blending(scheme: type[Curve], u: FloatArray, *, cumulative: bool) -> pd.DataFrame:
-    """B_0 ... B_3 (or their cumulative sums) of the four keyframes around a segment, at u (m,).
+def blending(
+    scheme: type[Curve], u: FloatArray, *, cumulative: bool, around: int = 4, **options: Any
+) -> pd.DataFrame:
+    """B_0, B_1, ... (or their cumulative sums) of the keyframes around a segment, at u (m,).
 
-    Columns u, B0, B1, B2, B3 (dimensionless); uniform unit knots.
+    Columns u, B0, B1, ... (dimensionless), as many as keyframes ``around`` it, an even number; uniform unit knots.
+    ``options`` are the scheme's.
     """
-    count = 2 * PADDING
+    before = PADDING + around // 2 - 2
     columns: dict[str, FloatArray] = {"u": u}
-    for j in range(4):
-        angle = np.zeros((count, 3))
-        keyframe = PADDING - 2 + j
+    for j in range(around):
+        angle = np.zeros((2 * before, 3))
+        keyframe = before - around // 2 + j
         if cumulative:
             angle[keyframe:, 2] = ANGLE
         else:
             angle[keyframe, 2] = ANGLE
-        curve = scheme(None, quaternion.exp(angle))
-        columns[f"B{j}"] = curve.log(PADDING - 1 + u)[:, 2] / ANGLE
+        curve = scheme(None, quaternion.exp(angle), **options)
+        columns[f"B{j}"] = curve.log(before - 1 + u)[:, 2] / ANGLE
     return pd.DataFrame(columns)

@@ -35,7 +35,7 @@ stays within the factor for six halvings at most; rounding itself, of arc cosine
 STRAYS = 0.2
 """Share of windows around a leap whose turn may be smaller: at a leap itself a curve may take any value."""
 CORNER = 1e-7
-"""A break of the velocity is told above this share of a turn by 1 rad a spacing, ..."""
+"""A break of the velocity is told above this share of a turn by 1 rad per spacing, ..."""
 LEAP = 1e-6
 """... one of the orientation above this angle in rad: libraries round orientations to 1e-8."""
 

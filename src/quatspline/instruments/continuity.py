@@ -53,7 +53,7 @@ SLOPE = np.array([-13.0 / 3.0, 19.0 / 2.0, -7.0, 11.0 / 6.0])
 """Weights of values at h, 2h, 3h, 4h for the value and for h times the slope at 0."""
 
 DENSE = 7
-"""Samples a segment for the size of a quantity."""
+"""Samples per segment for the size of a quantity."""
 
 AT_REST = 1e-12
 """A motion that turns by less in all, in rad, is at rest: what is left is rounding."""

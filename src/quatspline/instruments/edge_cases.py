@@ -39,7 +39,7 @@ ENDS = 4
 """Segments that feel the ends of an open curve which all keyframes shape."""
 
 SAMPLES = 10
-"""Samples a segment, keyframes besides."""
+"""Samples per segment, keyframes besides."""
 
 
 def edge_result(case: EdgeCase, name: str, **options: Any) -> Row:

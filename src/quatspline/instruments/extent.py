@@ -15,7 +15,7 @@ EXACT = 1e-9
 """Degrees below which nothing but rounding is left."""
 
 GRID, CANDIDATES = 9, 8
-"""Samples a segment, its ends included, and the fastest segments that are then looked into."""
+"""Samples per segment, its ends included, and the fastest segments that are then looked into."""
 FINER, ZOOMS = 5, 12
 """Samples of that search, and how often its interval is halved: a smooth peak is then found to 1e-9."""
 

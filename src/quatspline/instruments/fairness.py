@@ -14,6 +14,7 @@ import numpy as np
 from quatspline.curve import Curve
 from quatspline.instruments.continuity import rounding
 from quatspline.instruments.derivatives import closed_forms, rates_since
+from quatspline.instruments.node_rates import NodeRates
 from quatspline.instruments.panels import (
     HALVINGS,
     MOST,
@@ -45,16 +46,16 @@ _Level = tuple[Panels, FloatArray, FloatArray]
 """Panels, alpha at their nodes (p, POINTS, 3), and their integrals of torque, jerk and length (p, 3)."""
 
 
-def fairness(curve: Curve) -> dict[str, float]:
+def fairness(curve: Curve, rates: NodeRates | None = None) -> dict[str, float]:
     """Integrals and peaks of a single-track curve as it runs between keyframes; lower is fairer.
 
     torque: integral of |alpha|^2 (rad^2/t^3), infinite in truth where the velocity jumps; jerk:
     integral of |alpha'|^2 (rad^2/t^5), infinite where alpha is seen to jump inside a segment; length:
     integral of |omega| (rad); peak: max |alpha| (rad/t^2), on both sides of every keyframe too.  Panels
     are halved until torque and length agree to 1e-7 and jerk to 1e-6, or as far as rounding of the rates
-    lets them.
+    lets them.  ``rates`` of the curve, given, are shared with other integrals over it.
     """
-    panels, alpha, integrals = _gathered(list(_settled(curve)))
+    panels, alpha, integrals = _gathered(list(_settled(curve, rates or NodeRates(curve))))
     torque, jerk, length = map(float, integrals.sum(axis=0))
     peak = max(_peak_at_knots(curve), _peak_inside(curve, panels, alpha))
     return {"torque": torque, "jerk": jerk, "length": length, "peak": peak}
@@ -70,17 +71,17 @@ def _gathered(levels: list[_Level]) -> _Level:
 # -- integrals ----------------------------------------------------------------------------------
 
 
-def _settled(curve: Curve) -> Iterator[_Level]:
+def _settled(curve: Curve, rates: NodeRates) -> Iterator[_Level]:
     """Panels whose integrals (p, 3) agree with those of the level above, with alpha (p, POINTS, 3)."""
     knots = curve.keyframes.knots
     halvings, most = (HALVINGS, MOST) if closed_forms(curve) else (STENCIL_HALVINGS, STENCIL_MOST)
     span, budget = knots[-1], most * (len(knots) - 1)
     coarse = whole(curve.keyframes)
-    before = _measured(curve, coarse)[1]
+    before = _measured(rates, coarse)[1]
     done = np.zeros(3)
     for level in range(halvings + 1):
         fine = coarse.halves()
-        alpha, integrals = _measured(curve, fine)
+        alpha, integrals = _measured(rates, fine)
         sums = integrals.reshape(-1, 2, 3).sum(axis=1)
         total = done + sums.sum(axis=0)
         off = np.abs(sums - before) - _rounding(curve, coarse, sums)
@@ -99,11 +100,10 @@ def _settled(curve: Curve) -> Iterator[_Level]:
         coarse, before = fine.picked(halves), integrals[halves]
 
 
-def _measured(curve: Curve, panels: Panels) -> tuple[FloatArray, FloatArray]:
+def _measured(rates: NodeRates, panels: Panels) -> tuple[FloatArray, FloatArray]:
     """alpha at the nodes (p, POINTS, 3), and the integrals of torque, jerk and length (p, 3)."""
-    u, weights = gauss()
-    shape = (-1, POINTS, 3)
-    omega, alpha = (x.reshape(shape) for x in rates_since(curve, panels.times(u).reshape(-1)))
+    weights = gauss()[1]
+    omega, alpha = rates(panels)
     jerk = np.einsum("ij,pjk->pik", _derived(), alpha) / panels.width[:, None, None]
     squares = [np.einsum("pik,pik->pi", x, x) for x in (alpha, jerk, omega)]
     squares[2] = np.sqrt(squares[2])

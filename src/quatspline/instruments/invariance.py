@@ -23,7 +23,7 @@ TRIALS = 3
 """Random changes a property."""
 
 SAMPLES = 8
-"""Samples a segment, all inside: ends and keyframes are met by construction."""
+"""Samples per segment, all inside: ends and keyframes are met by construction."""
 
 SCALES = (1e-3, 4.0, 1e6)
 SHIFT = 2.0**20

@@ -34,8 +34,10 @@ AGREE = 1e-4
 NOTHING = 1e-12
 """An energy below this, in units of one over the length, is that of a great circle."""
 
-UPDATES, RESTS = 400, 1e-12
-"""Updates of a level at most, and the relative gain of one that ends it."""
+UPDATES, RESTS, TREND, NONE = 400, 1e-9, 4, 1e-12
+"""Updates of a level at most, and the relative gain that is still to come when it ends: gains fall by a share each,
+slowly where residuals are large, and a geometric series through the last few tells what is left.  One below the
+last constant is rounding."""
 
 DAMPING, STUCK, LEAP = 1e-3, 1e10, 0.1
 """Levenberg's weight at first and at most, and the longest move, as a share of the bound."""
@@ -189,6 +191,7 @@ def _descended(points: FloatArray, free: BoolArray, longest: float) -> FloatArra
     inner = free[1:-1].astype(float)
     damping, pull, weight = DAMPING, 0.0, 0.0
     cost, length = _cost(points, inner)
+    gains: list[float] = []
     for _ in range(UPDATES):
         matrix, slope, lengthening = _equations(points, free, pull)
         gain = None
@@ -207,9 +210,19 @@ def _descended(points: FloatArray, free: BoolArray, longest: float) -> FloatArra
                     return points
         points, cost, length, pull = moved, lower, longer, wanted
         damping = max(0.25 * damping, 1e-12)
-        if gain <= RESTS * merit:
+        gains.append(gain)
+        if gain <= NONE * merit or _to_come(gains) <= RESTS * merit:
             break
     return points
+
+
+def _to_come(gains: list[float]) -> float:
+    """What updates will gain yet, if each gains as much less than the one before as the last few did at worst."""
+    last = np.array(gains[-TREND:])
+    if len(last) < TREND or (last[1:] >= last[:-1]).any():
+        return np.inf
+    share = float((last[1:] / last[:-1]).max())
+    return gains[-1] * share / (1.0 - share)
 
 
 def _cost(points: FloatArray, inner: FloatArray) -> tuple[float, float]:

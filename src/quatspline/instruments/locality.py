@@ -17,7 +17,7 @@ FELT = 1e-8
 iteration solved to 1e-11 leaves, so that a decay of 0.27 a segment is followed for 14 segments."""
 
 SAMPLES = 12
-"""Samples a segment."""
+"""Samples per segment."""
 
 TAIL = 2
 """Segments next to the keyframe that a decay is not read from, and ..."""

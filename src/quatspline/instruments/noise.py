@@ -24,7 +24,7 @@ SIGMA = 1e-4
 small enough that responses are linear, large against rounding."""
 
 SAMPLES = 5
-"""Gauss-Legendre points a segment: exact for squares of quartics, which blending functions are."""
+"""Gauss-Legendre points per segment: exact for squares of quartics, which blending functions are."""
 
 
 def noise(

@@ -1,4 +1,4 @@
-"""A curve on somebody's own keyframes: what a comparison says of it."""
+"""A curve on a user's own keyframes: what a comparison says of it."""
 
 from __future__ import annotations
 

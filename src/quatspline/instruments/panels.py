@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from quatspline.inputs.arrays import BoolArray, IntArray
 from quatspline.keyframes import Keyframes
 from quatspline.quaternion import FloatArray
 
@@ -36,7 +37,7 @@ class Panels(NamedTuple):
         """Times (p, k) at shares u (k,) of the panels."""
         return self.left[:, None] + self.width[:, None] * u
 
-    def picked(self, which: FloatArray) -> Panels:
+    def picked(self, which: IntArray | BoolArray) -> Panels:
         """Those of a mask or index."""
         return Panels(self.left[which], self.width[which], self.spacing[which])
 

@@ -41,7 +41,8 @@ def returning(motion: Motion) -> Motion:
         return motion
     gap = float(quaternion.distance(*quaternion.normalise(q[[-1, 0]])).max())
     if gap < REPEATED:
-        return replace(motion, quaternions=q[:-1])
+        into, out = _tangents_round(motion)
+        return replace(motion, quaternions=q[:-1], in_tangents=into, out_tangents=out)
     near = f"the last row is {np.degrees(gap):.2g} degrees from the first orientation"
     ambiguous = gap < min(NEARLY, SHARE * _median_step(q))
     if not prepare(t, q).uniform:
@@ -57,7 +58,17 @@ def _one_step_more(motion: Motion, note: str) -> Motion:
     t, x = motion.stamps, motion.positions
     end = _one_step_after(t)
     x = None if x is None else np.concatenate([x, x[:1]])
-    return replace(motion, stamps=np.append(t, np.asarray(end, t.dtype)), positions=x, note=note)
+    longer = motion.without_tangents()  # a file's splines know nothing of the step more
+    return replace(longer, stamps=np.append(t, np.asarray(end, t.dtype)), positions=x, note=note)
+
+
+def _tangents_round(motion: Motion) -> tuple[FloatArray | None, FloatArray | None]:
+    """Tangents without the return's row: what arrives there arrives at the first keyframe, as that is signed."""
+    into, out, q = motion.in_tangents, motion.out_tangents, motion.quaternions
+    if into is None or out is None:
+        return None, None
+    sign = np.sign(np.sum(q[-1] * q[0], axis=-1, keepdims=True))
+    return np.concatenate([(sign * into[-1])[None], into[1:-1]]), out[:-1]
 
 
 def _median_step(q: FloatArray) -> float:

@@ -34,7 +34,7 @@ def read_motion(
     path : the file; its suffix tells the format
     skeleton : the ASF of an AMC; by default the one that it names, or of its own name, beside it
     rate : frames a second where a file has no times or (BVH, AMC) another rate is meant
-    times : the same as times in seconds (n,), or a file with one a line
+    times : the same as times in seconds (n,), or a file with one per line
     units : of an AMC's lengths: "cmu" (default) divides by the ASF's unit, "spec" multiplies
     skip : frames to leave out at the start, such as a pose that a converter added
     duplicates : rows that repeat a stamp: "refuse", or keep the "first", the "last", their "mean"

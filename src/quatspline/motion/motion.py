@@ -135,11 +135,19 @@ class Motion:
     # -- parts of it ------------------------------------------------------------------------------
 
     def frames(self, index: slice | NDArray[Any]) -> Motion:
-        """The motion of some frames, in order."""
+        """The motion of some frames, in order; the file's tangents serve frames without any left out between."""
         held = ("stamps", "quaternions", "positions", "in_tangents", "out_tangents")
         arrays = {name: getattr(self, name) for name in held}
         picked = {name: a[index] for name, a in arrays.items() if a is not None}
-        return dataclasses.replace(self, **picked)
+        part = dataclasses.replace(self, **picked)
+        if self.interpolation != "CUBICSPLINE" or _is_run(index, len(self.stamps)):
+            return part
+        return part.without_tangents()
+
+    def without_tangents(self) -> Motion:
+        """The motion without what the file's splines do between its frames."""
+        kept = None if self.interpolation == "CUBICSPLINE" else self.interpolation
+        return dataclasses.replace(self, interpolation=kept, in_tangents=None, out_tangents=None)
 
     def aligned(self) -> Motion:
         """The motion with neighbours in time on one hemisphere, tangents with them."""
@@ -192,7 +200,8 @@ class Motion:
         positions : "matched" takes the family of curves that is to positions what the scheme is to
             orientations, with a global scheme's degree and ends; by name: "linear", "catmull-rom",
             "cubic", "local-quintic", "quartic"
-        **options : of the scheme, and ``closed``, ``align``
+        **options : of the scheme, and ``closed``, ``align``; ``gltf-cubic`` takes the file's own tangents
+            where there are some, none are given, and no frame is left out
 
         Raises
         ------
@@ -245,6 +254,11 @@ class Motion:
         from quatspline.motion.reducing import reduction
 
         return reduction(self, scheme, error, together, options)
+
+
+def _is_run(index: slice | NDArray[Any], count: int) -> bool:
+    """Whether an index picks frames that follow each other, of so many."""
+    return bool((np.diff(np.arange(count)[index]) == 1).all())
 
 
 def _check_shapes(motion: Motion) -> None:

@@ -15,6 +15,7 @@ from quatspline.curve import Curve
 from quatspline.inputs.arrays import at, real_array, switch
 from quatspline.motion import positions as families
 from quatspline.motion.positions import Places
+from quatspline.options import declared_by
 from quatspline.quaternion import FloatArray
 from quatspline.solving import ConvergenceError
 
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
 
 LARGE = 500
 """The exponent of two of positions whose slopes and second derivatives float64 holds."""
+
+TANGENTS = ("in_tangents", "out_tangents")
+"""Of a motion, and options of a scheme."""
 
 EDGE = 8
 """Times this many ulp outside a piece count as its end."""
@@ -51,8 +55,9 @@ class MotionCurve:
             raise ValueError("closed: the motion has gaps")
         self.family = families.family(positions, catalogue.scheme(scheme), given)
         build = partial(catalogue.build, scheme, **given)
+        tangents = _tangents(motion, scheme, given) if every == 1 else {}
         self.pieces = [
-            _Piece(motion, a, b, every, build, self.family)
+            _Piece(motion, a, b, every, build, self.family, tangents)
             for a, b in pairwise(motion.edges)
             if b - a > 1
         ]
@@ -154,6 +159,7 @@ class _Piece:
         every: int,
         build: Callable[..., Curve],
         family: families.Family,
+        tangents: dict[str, FloatArray],
     ) -> None:
         turning = end - begin - motion.closed
         index = begin + np.unique(
@@ -166,23 +172,28 @@ class _Piece:
         self.tracks = q.shape[1]
         self.errors: dict[str, Exception] = {}
         self.good = np.arange(self.tracks)
-        self.orientation = self._fitted(motion, partial(build, t), q)
+        rows = {name: array[index] for name, array in tangents.items()}
+
+        def of(tracks: NDArray[np.intp]) -> Curve:
+            return build(t, q[:, tracks], **{name: row[:, tracks] for name, row in rows.items()})
+
+        self.orientation = self._fitted(motion, of)
         self.fixed, self.moving, self.along = _places(motion, times, t, family)
 
-    def _fitted(self, motion: Motion, build: Callable[..., Curve], q: FloatArray) -> Curve:
+    def _fitted(self, motion: Motion, of: Callable[[NDArray[np.intp]], Curve]) -> Curve:
         """The curve of all tracks, or of those that have one alone."""
         try:
-            return build(q)
+            return of(self.good)
         except (ConvergenceError, ValueError) as error:
             for k, name in enumerate(motion.tracks if self.tracks > 1 else ()):
                 try:
-                    build(q[:, k : k + 1])
+                    of(np.array([k]))
                 except (ConvergenceError, ValueError) as own:
                     self.errors[name] = own
             self.good = np.array([k for k in self.good if motion.tracks[k] not in self.errors])
             if not self.errors or not self.good.size:
                 raise error  # nothing goes on
-        return build(q[:, self.good])
+        return of(self.good)
 
     def __call__(self, t: FloatArray) -> tuple[FloatArray, FloatArray | None]:
         q = np.full((t.size, self.tracks, 4), np.nan)
@@ -193,6 +204,15 @@ class _Piece:
         if self.along is not None:
             x[:, self.moving] = self.along(self.orientation.since(t) + self.first)
         return q, x.reshape(t.size, -1, 3)
+
+
+def _tangents(motion: Motion, scheme: str, given: dict[str, Any]) -> dict[str, FloatArray]:
+    """What the file's splines do between its keyframes, for a scheme that takes it and is given nothing else."""
+    kept = {name: getattr(motion, name) for name in TANGENTS}
+    takes = set(TANGENTS) <= set(declared_by(catalogue.scheme(scheme)))
+    if not takes or given.keys() & kept or any(array is None for array in kept.values()):
+        return {}
+    return kept
 
 
 def _places(

@@ -1,4 +1,4 @@
-"""The chooser at the top of the page: six questions over one table with a row a scheme, nine columns.
+"""The chooser at the top of the page: six questions over one table with a row per scheme, nine columns.
 
 What is measured comes from the folder's tables `choosing` and `excursion`, what is claimed (how far ahead a
 segment looks, whether a scheme iterates) from the catalogue.
@@ -65,29 +65,33 @@ WORDS = (
 def chooser(folder: Folder) -> dict[str, Any]:
     """Questions and rows as the template takes them."""
     rows = facts(folder)
-    told = reference(folder, TABLE)
+    table = reference(folder, TABLE)
+    told = {} if table is None else {str(row["scheme"]): row for row in records(_known(table))}
     derivations = Derivations(folder.path)
     return {
         "questions": [_question(choice, rows) for choice in CHOICES],
         "columns": COLUMNS,
-        "rows": [_row(row, told, derivations) for row in records(rows)],
+        "rows": [_row(row, told.get(str(row["scheme"])), derivations) for row in records(rows)],
     }
 
 
 def facts(folder: Folder) -> pd.DataFrame:
     """The table `choosing`, with the columns that conditions and cells ask besides."""
-    rows = folder.frame(TABLE).copy()
-    known = ["smooth_k", "smooth_k_worst", "worst_failure", "torque", "support"]
-    rows = rows.reindex(columns=list(dict.fromkeys([*rows.columns, *known])))
+    rows = _known(folder.frame(TABLE))
     least, worst = rows["smooth_k"], rows["smooth_k_worst"]
     keeps = (worst >= least).map({True: YES, False: NO})
     rows["keeps_smooth"] = keeps.where(least.notna() & worst.notna())
     rows["faults"] = rows["worst_failure"].notna().map({True: YES, False: NO})
-    items = rows["scheme"].map(lambda name: found().get(str(name)))
-    rows["iterates"] = items.map(_iterates).astype(object)
-    rows["found"] = items
-    rows["wander"] = rows["scheme"].map(_wandering(folder))
+    rows["iterates"] = rows["found"].map(_iterates).astype(object)
+    rows = rows.join(_excursions(folder), on="scheme")
     return rows.sort_values("torque", kind="stable")
+
+
+def _known(table: pd.DataFrame) -> pd.DataFrame:
+    """The table with all columns that cells are made of, and what the catalogue has under the schemes' names."""
+    known = ["smooth_k", "smooth_k_worst", "worst_failure", "torque", "support"]
+    rows = table.reindex(columns=list(dict.fromkeys([*table.columns, *known])))
+    return rows.assign(found=rows["scheme"].map(lambda name: found().get(str(name))))
 
 
 def _iterates(item: Any) -> str | None:
@@ -96,13 +100,16 @@ def _iterates(item: Any) -> str | None:
     return YES if item.scheme.iterative else NO
 
 
-def _wandering(folder: Folder) -> dict[str, float]:
-    """Degrees that schemes wander at most during long holds; nothing where that was not measured."""
+def _excursions(folder: Folder) -> pd.DataFrame:
+    """By scheme: degrees that it wanders at most during long holds, and the largest share of steps that it overshoots.
+
+    Nothing where that was not measured.
+    """
     if "excursion" not in folder.tables:
-        return {}
+        return pd.DataFrame({"wander": [], "overshot": []}, dtype=float)
     table = folder.frame("excursion")
-    rows = table[table["data"].eq(HOLD)]
-    return dict(zip(rows["scheme"], rows["wander_worst"], strict=True))
+    holds = table[table["data"].eq(HOLD)].set_index("scheme")["wander_worst"]
+    return pd.DataFrame({"wander": holds, "overshot": table.groupby("scheme")["overshot"].max()})
 
 
 # -- questions ----------------------------------------------------------------------------------
@@ -126,23 +133,29 @@ def _question(choice: Choice, rows: pd.DataFrame) -> dict[str, Any]:
 # -- rows ---------------------------------------------------------------------------------------
 
 
-def _row(row: Row, told: pd.DataFrame | None, derivations: Derivations) -> dict[str, Any]:
-    name, item = str(row["scheme"]), row["found"]
+def _row(row: Row, told: Row | None, derivations: Derivations) -> dict[str, Any]:
+    name, cells = str(row["scheme"]), _cells(row)
     asked = {c.column for choice in CHOICES for a in choice.answers for c in a.conditions}
+    for key, other in {} if told is None else _cells(told).items():
+        cells[key]["told"] = "" if other["text"] in (cells[key]["text"], NONE) else other["text"]
     return {
         "scheme": name,
         "link": derivations.of(name),
         "facts": {column: _json(row.get(column)) for column in sorted(asked)},
-        "cells": {
-            "smooth": _smooth(row),
-            "local": _local(row, item),
-            **{key: _number(row, *where, told) for key, where in NUMBERS.items()},
-            "failure": _cell(failure(row), 0.0 if pd.isna(row["worst_failure"]) else 1.0),
-            "closes": _cell(
-                _text(row.get("closes")), {YES: 0.0, NO: 1.0}.get(str(row.get("closes")))
-            ),
-            "origin": _cell(*_origin(name, item)),
-        },
+        "cells": cells,
+    }
+
+
+def _cells(row: Row) -> dict[str, dict[str, Any]]:
+    """What is shown of a scheme, by column."""
+    closes = row.get("closes")
+    return {
+        "smooth": _smooth(row),
+        "local": _local(row),
+        **{key: _number(row, *where) for key, where in NUMBERS.items()},
+        "failure": _cell(failure(row), 0.0 if pd.isna(row["worst_failure"]) else 1.0),
+        "closes": _cell(_text(closes), {YES: 0.0, NO: 1.0}.get(str(closes))),
+        "origin": _cell(*_origin(str(row["scheme"]), row["found"])),
     }
 
 
@@ -153,9 +166,9 @@ def _json(value: Any) -> Any:
     return value.item() if hasattr(value, "item") else value
 
 
-def _cell(text: str, order: float | None, told: str = "") -> dict[str, Any]:
-    """What is shown, what it is sorted by, and the reference's value where the run's is of quick size."""
-    return {"text": text, "order": "" if order is None else f"{order:.12g}", "told": told}
+def _cell(text: str, order: float | None) -> dict[str, Any]:
+    """What is shown, what it is sorted by, and room for the reference's text beside a quick run's."""
+    return {"text": text, "order": "" if order is None else f"{order:.12g}", "told": ""}
 
 
 def _text(value: Any) -> str:
@@ -176,9 +189,9 @@ def _continuity(k: int) -> str:
     return "a leap" if k < 0 else SUPERSCRIPTS.get(k, f"C{k}")
 
 
-def _local(row: Row, item: Found | None) -> dict[str, Any]:
+def _local(row: Row) -> dict[str, Any]:
     """How many keyframes shape a segment, as measured, and how many it looks ahead, as claimed."""
-    support = row["support"]
+    support, item = row["support"], row["found"]
     if pd.isna(support):
         return _cell(NONE, None)
     if support == "all":
@@ -188,25 +201,11 @@ def _local(row: Row, item: Found | None) -> dict[str, Any]:
     return _cell(f"{support} keyframes{ahead}", float(support))
 
 
-def _number(row: Row, column: str, spec: str, told: pd.DataFrame | None) -> dict[str, Any]:
+def _number(row: Row, column: str, spec: str) -> dict[str, Any]:
     value = row.get(column)
     if value is None or pd.isna(value):
         return _cell(NONE, None)
-    text = _written(value, spec)
-    return _cell(
-        text,
-        float(value) * (-1.0 if column == "order" else 1.0),
-        _told(row, column, spec, text, told),
-    )
-
-
-def _told(row: Row, column: str, spec: str, text: str, told: pd.DataFrame | None) -> str:
-    """The reference's value, where it is another."""
-    if told is None or column not in told:
-        return ""
-    values = told.loc[told["scheme"] == row["scheme"], column].dropna()
-    own = _written(values.iloc[0], spec) if len(values) else ""
-    return "" if own == text else own
+    return _cell(_written(value, spec), float(value) * (-1.0 if column == "order" else 1.0))
 
 
 def _written(value: float, spec: str) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import json
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -12,23 +11,26 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from quatspline import __version__
-from quatspline.findings import targets
 from quatspline.findings.findings import Finding, findings
 from quatspline.findings.quotes import Quote
 from quatspline.page import plots, rankings, sections
 from quatspline.page.chooser import chooser
+from quatspline.page.derivations import Derivations
 from quatspline.page.folder import Folder
 from quatspline.page.glossary import column
 from quatspline.page.motion import Scene, player_data
-from quatspline.page.reference import Beside, place, quick
+from quatspline.page.policy import policy
+from quatspline.page.reference import Beside, place, quick, reference
 from quatspline.page.sections import Section
+from quatspline.page.speed import speed
 from quatspline.page.table1 import side_by_side
+from quatspline.system.packing import deflated
 
 ASSETS = Path(__file__).parent / "assets"
 SCRIPTS = (
     *("data", "address", "theme", "contents", "figures", "chooser", "tables", "plots"),
     *("scenes", "geometry", "stage", "path", "strip", "clock", "player"),
-    *("jets", "curves", "drawing"),
+    *("jets", "curves", "pasted", "drawing"),
     *("recording", "wires", "replay", "start"),
 )
 """Scripts in the order that they are run."""
@@ -41,20 +43,16 @@ TOPICS = {
 }
 MAKERS: dict[str, tuple[tuple[str, ...], Callable[[Folder], Any]]] = {
     "chooser": (("choosing", "excursion"), chooser),
-    "table1": (("table1",), lambda folder: side_by_side(folder.frame("table1"))),
-    "speed": (
-        ("speed",),
-        lambda folder: {
-            "where": targets.measured_on(folder.manifest),
-            "rows": [targets.cells(verdict) for verdict in targets.verdicts(folder.frame)],
-            "note": targets.ACCURACY,
-        },
+    "table1": (
+        ("table1",),
+        lambda folder: side_by_side(folder.frame("table1"), reference(folder, "table1")),
     ),
+    "speed": (("speed",), speed),
 }
 """What templates of sections show that is made from tables, by the section's block: the tables, and what makes it."""
 
-ADDED = "What the measurements add"
-"""Headings of the findings; every further topic is under the last."""
+ADDED, FOUND = "What the measurements add", "What was found"
+"""Headings of further topics, of the whole page and of a section."""
 
 
 def document(
@@ -71,6 +69,7 @@ def document(
     have = {kind for kind, some in (("scenes", motions), ("replays", folder.replays)) if some}
     told = findings(folder.frame) if said is None else said
     shown = [_filled(section, folder, have, told) for section in _sections(folder, parts)]
+    scripts = list(_scripts())
     context = {
         "title": title,
         "version": __version__,
@@ -81,12 +80,11 @@ def document(
         "quick": quick(folder),
         "reference": place() is not None,
         "beside": Beside(folder),
+        "docs": Derivations(folder.path),
         "data": list(_data(folder, motions)),
         "style": Markup((ASSETS / "page.css").read_text(encoding="utf-8")),
-        "plotly": Markup(_plotly()),
-        "scripts": [
-            Markup((ASSETS / f"{name}.js").read_text(encoding="utf-8")) for name in SCRIPTS
-        ],
+        "policy": Markup(policy(scripts)),
+        "scripts": list(map(Markup, scripts)),
     }
     return _environment().get_template("page.html").render(context)
 
@@ -105,10 +103,11 @@ def _environment() -> Environment:
     return environment
 
 
-def _plotly() -> str:
+def _scripts() -> Iterator[str]:
     from plotly.offline import get_plotlyjs
 
-    return str(get_plotlyjs())
+    yield str(get_plotlyjs())
+    yield from ((ASSETS / f"{name}.js").read_text(encoding="utf-8") for name in SCRIPTS)
 
 
 # -- sections -----------------------------------------------------------------------------------
@@ -130,7 +129,7 @@ def _filled(
     played = section.needs in have
     if not tables and not played:
         return None
-    own = [finding for finding in told if finding.topic in section.topics]
+    own = _grouped([each for each in told if each.topic in section.topics], FOUND)
     block = section.block if played or not section.needs else ""
     made = _made(section, folder)
     return {"section": section, "block": block, "tables": tables, "findings": own, "made": made}
@@ -163,24 +162,18 @@ def _table(name: str, section: Section, folder: Folder) -> dict[str, Any]:
         "table": table,
         "plots": [spec for spec in drawn if spec],
         "picture": picture,
-        "source": _data_uri(picture.svg) if picture else "",
         "size": folder.manifest.get("sizes", {}).get(name, ""),
     }
-
-
-def _data_uri(svg: str) -> str:
-    coded = base64.b64encode(svg.encode("utf-8")).decode("ascii")
-    return f"data:image/svg+xml;base64,{coded}"
 
 
 # -- findings -----------------------------------------------------------------------------------
 
 
-def _grouped(found: Sequence[Finding]) -> list[tuple[str, list[Finding]]]:
-    """Findings under their headings, in order."""
+def _grouped(found: Sequence[Finding], other: str = ADDED) -> list[tuple[str, list[Finding]]]:
+    """Findings under their headings, in order; those of further topics under the other."""
     groups: dict[str, list[Finding]] = {}
     for finding in found:
-        groups.setdefault(TOPICS.get(finding.topic, ADDED), []).append(finding)
+        groups.setdefault(TOPICS.get(finding.topic, other), []).append(finding)
     return list(groups.items())
 
 
@@ -222,6 +215,8 @@ def _data(folder: Folder, motions: list[dict[str, Any]]) -> Iterator[tuple[str, 
     """What scripts read, by the id of the element that holds it."""
     for name, table in folder.tables.items():
         yield f"csv-{name}", table.text
+        if name in folder.pictures:
+            yield f"picture-{name}", deflated(folder.pictures[name].svg)
     yield "scenes", motions
     yield "replays", folder.replays
     yield "looks", {name: plots.scheme_look(name) for name in sorted(_schemes(folder, motions))}

@@ -62,6 +62,12 @@ class Picture:
     svg: str
     caption: str
 
+    @property
+    def size(self) -> tuple[float, float]:
+        """Width and height in the figure's own units, for which a page keeps room; a square where it tells none."""
+        box = re.search(r'<svg[^>]*\sviewBox="0 0 ([\d.]+) ([\d.]+)"', self.svg)
+        return (float(box[1]), float(box[2])) if box else (1.0, 1.0)
+
 
 class Folder:
     """A results folder, read.

@@ -115,7 +115,9 @@ def player_data(scene: Scene) -> dict[str, Any]:
         "positions": packed(scene.positions(times)),
         "curves": curves,
         "refused": refused,
-        "pair": [name for name in scene.pair if name in curves] or list(curves)[:2],
+        "pair": list(dict.fromkeys([name for name in (*scene.pair, *curves) if name in curves]))[
+            :2
+        ],
     }
 
 

@@ -1,4 +1,4 @@
-"""Sections of pages that `quatspline compare` writes of somebody's own keyframes and motions."""
+"""Sections of pages that `quatspline compare` writes of a user's own keyframes and motions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ OWN: tuple[Section, ...] = (
     Section(
         "compare",
         "Schemes compared",
-        "One row a scheme on these keyframes. Sort by any column: the line above the table states the criterion.",
+        "One row per scheme on these keyframes. Sort by any column: the line above the table states the criterion.",
         ("compare",),
         (
             Plot(
@@ -29,13 +29,13 @@ OWN: tuple[Section, ...] = (
     replace(_BLOCKS["recorded"], tables=(), plots=()),
     *(_BLOCKS[key] for key in ("motions", "log-curves", "rates")),
 )
-"""The sections of a page for somebody's own keyframes."""
+"""The sections of a page for a user's own keyframes."""
 
 KEPT: tuple[Section, ...] = (
     Section(
         "kept",
         "Schemes compared",
-        "One row a scheme, at the frames left out. Sort by any column: the line above the table states the criterion.",
+        "One row per scheme, at frames left out. Sort by any column: the line above the table states the criterion.",
         ("kept", "joints"),
         (
             Plot(
@@ -49,4 +49,4 @@ KEPT: tuple[Section, ...] = (
     ),
     replace(_BLOCKS["recorded"], tables=(), plots=()),
 )
-"""The sections of a page for a skeleton of somebody's own."""
+"""The sections of a page for a user's own skeleton."""

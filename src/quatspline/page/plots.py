@@ -7,7 +7,8 @@ from typing import Any, Literal
 
 from matplotlib.colors import to_hex, to_rgb
 
-from quatspline.figures.looks import LEADING, Dash, scheme_style, third_party
+from quatspline.figures.looks import Dash, scheme_style, third_party
+from quatspline.figures.named import NAMED
 from quatspline.page.folder import Table
 from quatspline.page.glossary import label
 
@@ -22,7 +23,7 @@ class Plot:
     ----------
     table : the table's name
     x, y : columns of the axes; of a map, the first of each
-    kind : lines a series, a point a row, or a map of z over x and y
+    kind : lines per series, a point per row, or a map of z over x and y
     z : columns of a map's colour
     series : the column whose values are told apart, each of which can be picked out or hidden
     split : columns that divide a series into several lines
@@ -63,7 +64,7 @@ def specification(plot: Plot, table: Table) -> dict[str, Any] | None:
         "log": list(plot.log),
         "start": plot.start,
         "ratios": list(plot.ratios),
-        "lit": list(LEADING),
+        "lit": list(NAMED),
     }
     return {"id": f"plot-{plot.table}-{plot.kind}", "table": plot.table, **axes, **rest}
 

@@ -60,6 +60,8 @@ class Beside:
         """The reference's text of a number that is another there; empty where it is the same or unknown."""
         if self._read is None or not {cell.table for cell in quote.cells} & self._quick:
             return ""
+        if isinstance(quote.value, str):  # a name, or the run's own size
+            return ""
         try:
             other = str(replace(quote, cells=self._cells(quote.cells)))
         except (FileNotFoundError, LookupError, ValueError):

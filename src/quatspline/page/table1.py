@@ -18,24 +18,35 @@ NOTHING = "—"
 UNITS = {"s": 1.0, "ms": 1e-3, "µs": 1e-6, "ns": 1e-9}
 
 
-def side_by_side(table: pd.DataFrame) -> list[dict[str, Any]]:
+def side_by_side(table: pd.DataFrame, told: pd.DataFrame | None = None) -> list[dict[str, Any]]:
     """One row a case, frame count and scheme of the paper's: its cells, then those of each protocol.
 
-    Cells are text, in the order of the template's headings; one that was not measured is empty.
+    Cells are pairs of text, in the order of the template's headings: what was measured, empty where
+    nothing was, and what the reference table has where that is another.
     """
-    groups: dict[Any, pd.DataFrame] = dict(list(table.groupby(ROW, sort=False)))
+    groups, others = _groups(table), {} if told is None else _groups(told)
     keys = [
         (case.name, row.frames, scheme)
         for case in CASES.values()
         for row in case.rows
         for scheme in PRINTED
     ]
-    return [_printed(key, groups[key]) for key in keys if key in groups]
+    return [_printed(key, groups[key], others.get(key)) for key in keys if key in groups]
 
 
-def _printed(key: tuple[str, int, str], group: pd.DataFrame) -> dict[str, Any]:
+def _groups(table: pd.DataFrame) -> dict[Any, pd.DataFrame]:
+    return dict(list(table.groupby(ROW, sort=False)))
+
+
+def _printed(
+    key: tuple[str, int, str], group: pd.DataFrame, told: pd.DataFrame | None
+) -> dict[str, Any]:
     case, frames, scheme = key
-    return {"key": [case, str(frames), PRINTED[scheme]], "cells": _cells(group)}
+    cells = _cells(group)
+    others = cells if told is None else _cells(told)
+    beside = ["" if other == cell else other for cell, other in zip(cells, others, strict=True)]
+    pairs = list(zip(cells, beside, strict=True))
+    return {"key": [case, str(frames), PRINTED[scheme]], "cells": pairs}
 
 
 def _cells(group: pd.DataFrame) -> list[str]:

@@ -11,7 +11,7 @@ from quatspline.quaternion import FloatArray
 
 
 class InterpolatePyCurve(PeerCurve):
-    """What the curves of InterpolatePy share: one call a sample, rates in the world frame."""
+    """What the curves of InterpolatePy share: one call per sample, rates in the world frame."""
 
     peer = "InterpolatePy"
     reference = "interpolatepy"

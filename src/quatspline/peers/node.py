@@ -1,6 +1,6 @@
 """Libraries of JavaScript: one process of Node.js, asked for all samples of a curve at once.
 
-The packages are those of ``javascript/package.json``, installed by ``make peers-node`` or by ``npm install``
+The packages are those of ``javascript/package.json``, installed by ``make peers-node`` or by ``npm ci``
 in that folder.  A time taken of such a curve contains two pipes, about 0.2 ms a call.
 """
 

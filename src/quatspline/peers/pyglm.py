@@ -9,7 +9,7 @@ from quatspline.quaternion import FloatArray
 
 
 class PyGlmCurve(PairwiseSlerp):
-    """Two double-precision quaternions of PyGLM and a function of them, one call a sample."""
+    """Two double-precision quaternions of PyGLM and a function of them, one call per sample."""
 
     reference = "pyglm"
     peer = "PyGLM"

@@ -10,7 +10,7 @@ from quatspline.quaternion import FloatArray
 
 
 class VtkCurve(PeerCurve):
-    """A ``vtkQuaternionInterpolator`` in one of its modes, one call a sample."""
+    """A ``vtkQuaternionInterpolator`` in one of its modes, one call per sample."""
 
     reference = "vtk"
     peer = "vtk"

@@ -6,22 +6,18 @@ import math
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from quatspline.families.rotation_vector import ROTATION_VECTOR
 from quatspline.fitting.noise_level import noise_level
 from quatspline.fitting.smoothing import REST, Smoothing, Solution
 from quatspline.fitting.smoothing_search import Criterion, Search, gcv, reached, risk
+from quatspline.fitting.weights import positive
 from quatspline.kernels.jit import REACH
 from quatspline.keyframes import Keyframes
-from quatspline.options import AtLeast, Count, OnFailure, Positive, per_keyframe
-from quatspline.quaternion import FloatArray
+from quatspline.options import AtLeast, Count, OnFailure, Positive
 from quatspline.segments import SegmentCurve
 
 Choice = Annotated[float, AtLeast(0.0)] | Literal["gcv", "auto"]
-
-SPREAD = 1e9
-"""Largest ratio of weights: beyond it rounding moves the keyframes that weigh least."""
 
 
 class SmoothingSpline(SegmentCurve):
@@ -86,7 +82,7 @@ class SmoothingSpline(SegmentCurve):
             raise ValueError(
                 f"noise={noise!r}: it chooses lambda, and so does smoothing={smoothing!r}"
             )
-        w = _positive(weights, keyframes.count)
+        w = positive(weights, keyframes.count)
         tracks, told, rest = keyframes.tracks.shape[0], [], []
         segments = np.empty((tracks, keyframes.spacings.size, self.family.constants))
         report = np.empty((tracks, 4))
@@ -94,8 +90,8 @@ class SmoothingSpline(SegmentCurve):
             own = keyframes.track(k)
             problem = Smoothing(own.quaternions, own.spacings / own.unit, own.closed, own.sign, w)
             if isinstance(smoothing, str):
-                search = Search(problem, max_iterations)
-                weight, start = search.least(*_criteria(smoothing, noise, own))
+                criteria = _criteria(smoothing, noise, own)
+                weight, start = Search(problem, max_iterations).least(*criteria)
                 found = problem.solve(weight, tolerance, max_iterations, start)
             else:
                 weight = float(smoothing) / own.unit**3
@@ -126,20 +122,3 @@ def _told(
     """lambda, the trace, and the noise by what is left: sqrt(rss / 3 (n - tr))."""
     free = 3.0 * max(len(problem.q) - trace, 0.0)
     return weight, trace, math.sqrt(found.state.rss / free) if free > 0.0 else 0.0
-
-
-def _positive(weights: ArrayLike | None, count: int) -> FloatArray:
-    """Weights (n,), refused where one is not above 0 or next to nothing."""
-    if weights is None:
-        return np.ones(count)
-    w = per_keyframe("weights", weights, count)
-    if (w <= 0.0).any():
-        i = int(np.argmax(w <= 0.0))
-        raise ValueError(f"weights[{i}] = {w[i]:g}: must be above 0")
-    if w.min() * SPREAD < w.max():
-        i = int(np.argmin(w))
-        raise ValueError(
-            f"weights[{i}] = {w[i]:g}: less than {1.0 / SPREAD:g} of the largest, {w.max():g}; "
-            "leave out what counts for nothing"
-        )
-    return w

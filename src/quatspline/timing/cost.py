@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from quatspline.curve import Curve
 from quatspline.instruments.trials import reason
 from quatspline.operations import UNSTATED
+from quatspline.segments import CHUNK
 from quatspline.timing.budget import OVER, Budget, Call, Job, rungs
 from quatspline.timing.interleaved import timed
 from quatspline.timing.operations import OPERATIONS, per_keyframe, per_sample
@@ -27,8 +28,8 @@ from quatspline.timing.operations import OPERATIONS, per_keyframe, per_sample
 SLOW = 0.05
 """Calls that take this share of the budget are timed once: rounds of them would exceed it."""
 
-SPREAD = 1000
-"""Segments between samples in a set-up: fewer than are fitted at once, so that every segment is fitted."""
+SPREAD = CHUNK
+"""Segments between samples in a set-up: as many as are fitted where one is asked for, so that all are."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,7 @@ def fitted_whole(make: Callable[[], Curve], times: NDArray[Any]) -> Call:
     """
     if len(times) <= SPREAD:
         return make
-    at = np.linspace(times[0], times[-1], 1 + -(-len(times) // SPREAD))
+    at = np.append(times[::SPREAD], times[-1:])
     return lambda: make()(at)
 
 

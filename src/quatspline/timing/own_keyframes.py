@@ -1,4 +1,4 @@
-"""A comparison on somebody's own keyframes: which schemes it leaves out on many, and seconds of the others."""
+"""A comparison on a user's own keyframes: which schemes it leaves out on many, and seconds of the others."""
 
 from __future__ import annotations
 

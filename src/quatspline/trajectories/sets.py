@@ -14,7 +14,7 @@ COUNT = 200
 def torque_sets(count: int = COUNT) -> list[tuple[FloatArray, FloatArray, float]]:
     """Open sets (times (n,), keyframes (n, 4), step in degrees) that fairness is measured on.
 
-    4 to 9 keyframes, one step angle a set from 20 to 110 degrees, random axes, spacings uniform in
+    4 to 9 keyframes, one step angle per set from 20 to 110 degrees, random axes, spacings uniform in
     [0.5, 1.5].  The first sets are the same whatever the count.
     """
     sets = []

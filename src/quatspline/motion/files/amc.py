@@ -67,7 +67,7 @@ def _skeleton_of(path: Path, lines: Sequence[str], reading: Reading) -> Path:
 
 
 def _frames(path: Path, lines: Sequence[str], bones: Bones) -> tuple[bool, dict[str, list[Line]]]:
-    """Whether values are degrees, and each bone's rows of values, one a frame."""
+    """Whether values are degrees, and each bone's rows of values, one per frame."""
     degrees, number, last, first = bones.degrees, 0, 0, 1
     moving = {name: len(bone.dof) for name, bone in bones.bones.items() if bone.dof}
     moving.setdefault(ROOT_NAME, 0)

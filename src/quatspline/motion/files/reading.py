@@ -89,7 +89,7 @@ class Reading:
 
 
 def _numbers(times: Any) -> FloatArray:
-    """Times as given, or one a line in a file."""
+    """Times as given, or one per line in a file."""
     if not isinstance(times, str | Path):
         return np.asarray(times, dtype=float)
     path = Path(times)
@@ -99,7 +99,7 @@ def _numbers(times: Any) -> FloatArray:
     except OSError as error:
         raise MotionFileError(f"{path}: cannot be read: {error.strerror or error}") from None
     except ValueError as error:
-        raise MotionFileError(f"{path}: not a list of times, one a line: {error}") from None
+        raise MotionFileError(f"{path}: not a list of times, one per line: {error}") from None
 
 
 def _check_positive(name: str, value: Any) -> None:

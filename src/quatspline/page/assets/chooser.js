@@ -101,12 +101,15 @@ quatspline.Chooser = class {
   }
 
   sentence(answers, kept) {
-    const all = `${kept.size} of ${this.rows.length} schemes qualify.`;
+    const all = `${kept.size} of ${this.rows.length} schemes ${kept.size === 1 ? "qualifies" : "qualify"}.`;
     if (!Object.keys(answers).length) return `${this.rows.length} schemes. Answer a question to narrow them.`;
     if (!kept.size) return `No scheme of ${this.rows.length} qualifies. ${this.relief(answers)}`;
-    const best = this.rows.find((row) => kept.has(row)); /* rows arrive by torque */
-    const torque = best.querySelector("[data-cell=torque]").firstChild.textContent.trim();
-    return `${all} ${/\d/.test(torque) ? `The least torque among them has ${best.dataset.scheme}: ${torque} times the least possible.` : ""}`;
+    const torque = (row) => row.querySelector("[data-cell=torque]").firstChild.textContent.trim();
+    const measured = this.rows.filter((row) => kept.has(row) && /\d/.test(torque(row))); /* rows arrive by torque */
+    if (!measured.length) return all;
+    const [best] = measured, sound = measured.find((row) => row.querySelector("[data-cell=failure]").dataset.order === "0");
+    const least = `${all} The least torque among them has ${best.dataset.scheme}: ${torque(best)} times the least possible.`;
+    return sound && sound !== best ? `${least} Of those of which no failure was found, ${sound.dataset.scheme}: ${torque(sound)}.` : least;
   }
 
   /* Which single answer, left out, would let schemes through. */

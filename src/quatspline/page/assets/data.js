@@ -76,10 +76,16 @@ quatspline.data = (() => {
     setTimeout(() => URL.revokeObjectURL(link.href), 1000);
   }
 
+  /* What was deflated (zlib), as a blob of a kind. */
+  async function inflated(text, kind) {
+    const stream = new Blob([bytes(text)]).stream().pipeThrough(new DecompressionStream("deflate"));
+    return new Blob([await new Response(stream).arrayBuffer()], { type: kind });
+  }
+
   const floats = (text) => new Float32Array(bytes(text));
   const integers = (text) => new Uint16Array(bytes(text));
   const signed = (text) => new Int16Array(bytes(text));
-  return { read, parseCsv, table, floats, integers, signed, shown, save };
+  return { read, parseCsv, table, floats, integers, signed, inflated, shown, save };
 })();
 
 /* An element with attributes and children; text is never read as markup. */

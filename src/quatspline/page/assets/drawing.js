@@ -3,7 +3,8 @@
 
 /* A motion through keyframes that change: what `Motion` is, computed here. */
 quatspline.OwnMotion = class extends quatspline.Sampled {
-  static PARTS = 32; /* samples a segment */
+  static PARTS = 32; /* samples per segment ... */
+  static SAMPLES = [9600, 4]; /* ... and fewer where there are many segments: in all, and per segment at least */
   static BEFORE = 1e-4; /* of a segment: the sample before its end, so that a jump is a step and not a slope */
   static APART = 1.15; /* bodies stand so far apart, in body lengths */
 
@@ -14,6 +15,10 @@ quatspline.OwnMotion = class extends quatspline.Sampled {
   }
 
   get name() { return `own ${this.revision}`; }
+  get parts() {
+    const { PARTS, SAMPLES: [all, least] } = quatspline.OwnMotion;
+    return Math.min(PARTS, Math.max(least, Math.floor(all / (this.knots.length - 1))));
+  }
   get schemes() { return quatspline.curves.SCHEMES; }
 
   set(times, quaternions) {
@@ -32,10 +37,10 @@ quatspline.OwnMotion = class extends quatspline.Sampled {
 
   /* Times since the first keyframe; the last of a segment is read from the segment that ends there. */
   _samples() {
-    const { PARTS, BEFORE } = quatspline.OwnMotion, { knots } = this, all = [];
+    const { BEFORE } = quatspline.OwnMotion, { knots, parts } = this, all = [];
     for (let k = 0; k + 1 < knots.length; k++) {
       const h = knots[k + 1] - knots[k];
-      for (let i = 0; i < PARTS; i++) all.push({ t: knots[k] + h * i / PARTS, at: knots[k] + h * i / PARTS, side: 1 });
+      for (let i = 0; i < parts; i++) all.push({ t: knots[k] + h * i / parts, at: knots[k] + h * i / parts, side: 1 });
       all.push({ t: knots[k + 1] - BEFORE * h, at: knots[k + 1], side: -1 });
     }
     return [...all, { t: this.span, at: this.span, side: -1 }];
@@ -58,7 +63,7 @@ quatspline.OwnMotion = class extends quatspline.Sampled {
 
   /* Degrees of rotation that a curve goes beyond a step's ends along its great circle, at most; during holds, away from it. */
   overshoot(name) {
-    const { q } = this.curve(name), { keyframes } = this, per = quatspline.OwnMotion.PARTS + 1;
+    const { q } = this.curve(name), { keyframes } = this, per = this.parts + 1;
     const worst = keyframes.slice(1).map((end, k) => this._beyond(q.slice(k * per, (k + 1) * per), keyframes[k], end));
     return 360 / Math.PI * Math.max(...worst);
   }
@@ -211,30 +216,22 @@ quatspline.Drawing = class extends quatspline.Player {
     return `t,w,x,y,z\n${times.map((t, k) => [t, ...keyframes[k]].join(",")).join("\n")}\n`;
   }
 
-  /* Lines of a time and a quaternion, w first; a heading may lead. Returns what is wrong, or nothing. */
+  /* Keyframes from text, or a word on what is wrong with it. */
   paste(text) {
-    const lines = quatspline.data.parseCsv(text).map((row) => row.map((field) => field.trim())).filter((row) => row.some(Boolean));
-    const headed = lines.length && lines[0].some((field) => Number.isNaN(Number(field)));
-    const rows = lines.slice(headed ? 1 : 0).map((row) => row.map(Number)), wrong = quatspline.Drawing.fault(rows);
+    const { rows, wrong } = quatspline.pasted.read(text);
     this.say(wrong || `${rows.length} keyframes taken.`);
     if (wrong) return;
-    this.replace(rows.map((row) => row[0]), rows.map((row) => row.slice(1)));
+    this._take(rows);
     this.share();
   }
 
-  static fault(rows) {
-    if (rows.length < 2) return "Two lines at least are needed, each t,w,x,y,z.";
-    for (const [k, row] of rows.entries()) {
-      if (row.length !== 5 || !row.every(Number.isFinite)) return `Keyframe ${k}: five numbers are expected, t,w,x,y,z.`;
-      if (Math.hypot(...row.slice(1)) < 1e-9) return `Keyframe ${k}: its quaternion has no length.`;
-      if (k && !(row[0] > rows[k - 1][0])) return `Keyframe ${k}: its time ${row[0]} does not come after ${rows[k - 1][0]}.`;
-    }
-    return "";
-  }
+  _take(rows) { this.replace(rows.map((row) => row[0]), rows.map((row) => row.slice(1))); }
 
   share() {
-    const { motion, controls } = this, short = (v) => Number(v.toFixed(quatspline.Drawing.DIGITS));
-    const keys = motion.times.map((t, k) => [t, ...motion.keyframes[k]].map(short).join(",")).join(";");
+    const { motion, controls } = this, { DIGITS } = quatspline.Drawing, short = (v, digits) => Number(v.toFixed(digits));
+    const closest = motion.knots.slice(1).reduce((least, knot, k) => Math.min(least, knot - motion.knots[k]), Infinity);
+    const decimals = Math.min(Math.max(DIGITS - Math.floor(Math.log10(closest)), 0), 20); /* so that no two times become one */
+    const keys = motion.times.map((t, k) => [short(t, decimals), ...motion.keyframes[k].map((v) => short(v, DIGITS))].join(",")).join(";");
     const view = { a: controls.a.value, b: controls.b.value, keys };
     quatspline.address.write("draw", view);
     this.place.querySelector("a.share").href = quatspline.address.of("draw", view);
@@ -242,9 +239,11 @@ quatspline.Drawing = class extends quatspline.Player {
 
   restore(values) {
     const rows = (values.get("keys") || "").split(";").map((row) => row.split(",").map(Number)), { motion, controls } = this;
-    if (quatspline.Drawing.fault(rows)) return;
+    const wrong = quatspline.pasted.fault(rows);
+    this.say(wrong && `The address holds no motion. ${wrong}`);
+    if (wrong) return;
     ["a", "b"].forEach((side) => { if (motion.schemes.includes(values.get(side))) controls[side].value = values.get(side); });
-    this.replace(rows.map((row) => row[0]), rows.map((row) => row.slice(1)));
+    this._take(rows);
     this.place.querySelector("a.share").href = location.hash;
   }
 };

@@ -1,10 +1,19 @@
-/* Figures are images whose source is the SVG itself: downloading decodes it. */
+/* Figures stand in this page as deflated SVG: they are inflated once it has loaded, and saved as they are. */
 "use strict";
-document.querySelectorAll("button.svg").forEach((button) => {
-  const picture = button.closest("figure").querySelector("img");
-  button.addEventListener("click", () => {
-    const raw = atob(picture.src.split(",")[1]);
-    const bytes = Uint8Array.from(raw, (c) => c.charCodeAt(0));
-    quatspline.data.save(picture.dataset.file, "image/svg+xml", bytes);
-  });
-});
+quatspline.figures = (() => {
+  const { read, inflated, save } = quatspline.data;
+
+  async function show(picture) {
+    const svg = await inflated(read(`picture-${picture.dataset.picture}`), "image/svg+xml");
+    picture.src = URL.createObjectURL(svg);
+    picture.closest("figure").querySelector("button.svg").addEventListener("click", () => save(`${picture.dataset.picture}.svg`, svg.type, svg));
+    await picture.decode();
+  }
+
+  /* One after the other, so that the page stays at hand meanwhile. */
+  async function showAll() {
+    for (const picture of document.querySelectorAll("img[data-picture]")) await show(picture);
+  }
+
+  return new Promise((done) => window.addEventListener("load", () => showAll().then(done)));
+})();

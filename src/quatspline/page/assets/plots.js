@@ -3,7 +3,7 @@
 quatspline.plots = (() => {
   const { element: make, data, theme } = quatspline;
   const looks = data.read("looks") || {};
-  const PAPER = 680; /* pixels across A4 between margins */
+  const PAPER = { width: 680, height: 410 }; /* pixels: across A4 between margins, and the height that the style gives a plot there */
   const printed = new Set();
   let printing = false;
 
@@ -21,7 +21,7 @@ quatspline.plots = (() => {
     const line = theme.color("line");
     return {
       title: { text: title, standoff: 8 }, type: log ? "log" : "linear", gridcolor: line, zeroline: false,
-      linecolor: theme.color("muted"), ticks: "outside", tickcolor: line, exponentformat: "power", automargin: true,
+      linecolor: theme.color("muted"), ticks: "outside", tickcolor: line, tickfont: { size: 12 }, exponentformat: "power", automargin: true,
       ...(log ? { dtick: 1, minor: { ticks: "outside", ticklen: 3, tickcolor: line } } : {}),
     };
   }
@@ -32,7 +32,7 @@ quatspline.plots = (() => {
     return {
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", hovermode: "closest",
       font: { family: "system-ui, sans-serif", size: narrow ? 12 : 14, color: theme.color("text") },
-      margin: { l: 60, r: 20, t: 16, b: 50 }, ...(printing ? { width: PAPER } : { width: undefined, autosize: true }),
+      margin: { l: 60, r: 20, t: 16, b: 50 }, ...(printing ? PAPER : { width: undefined, height: undefined, autosize: true }),
       hoverlabel: { bgcolor: theme.color("raised"), bordercolor: theme.color("line"), font: { color: theme.color("text") } },
       legend: { ...legend, font: { size: 12 }, itemclick: "toggle", itemdoubleclick: "toggleothers" },
       ...more,
@@ -79,7 +79,7 @@ quatspline.plots = (() => {
   window.addEventListener("beforeprint", drawAll(true));
   window.addEventListener("afterprint", drawAll(false));
 
-  return { axis, show, nothing, chooser, checkbox, lazily, seriesColor, look, FAINT, LEAST_EXCESS };
+  return { axis, show, nothing, chooser, checkbox, lazily, seriesColor, look, onPaper: () => printing, FAINT, LEAST_EXCESS };
 })();
 
 quatspline.TablePlot = class {
@@ -202,21 +202,19 @@ quatspline.TablePlot = class {
     const groups = new Map();
     for (const row of this._rows()) {
       if (row[i] === null || row[j] === null) continue;
-      const label = [s, ...split].map((c) => row[c]).filter((v) => v !== null).join(", ");
-      if (!groups.has(label)) groups.set(label, { name: row[s], points: [] });
+      const part = split.map((c) => row[c]).filter((v) => v !== null).join(", "), label = [row[s], part].filter((v) => v !== "" && v !== null).join(", ");
+      if (!groups.has(label)) groups.set(label, { name: row[s], part, points: [] });
       groups.get(label).points.push([shown(row[i], 0), shown(row[j], 1)]);
     }
     const picked = this.picked.select.value, dashes = quatspline.TablePlot.DASHES;
-    const nth = new Map(); /* lines of one series so far: they differ by dash */
-    return [...groups].map(([label, { name, points }]) => {
+    const parts = [...new Set([...groups.values()].map(({ part }) => part))]; /* of series: told apart by dash, the same in all */
+    return [...groups].map(([label, { name, part, points }]) => {
       points.sort((p, q) => p[0] - q[0]);
       const key = String(name), gray = !this.lit.has(key) && picked !== key;
-      const n = nth.get(name) || 0;
-      nth.set(name, n + 1);
       const look = { ...plots.look(name) }, color = gray ? theme.color("ghost") : plots.seriesColor(name), chosen = picked === key;
-      if (n) look.dash = dashes[n % dashes.length];
+      if (parts.length > 1) look.dash = dashes[parts.indexOf(part) % dashes.length];
       return {
-        name: label, meta: key, x: points.map((p) => p[0]), y: points.map((p) => p[1]), type: "scatter", zorder: gray ? 0 : 1, legendrank: gray ? 1001 : 1,
+        name: label, meta: key, x: points.map((p) => p[0]), y: points.map((p) => p[1]), type: "scatter", zorder: gray ? 0 : 1, legendrank: gray ? 1001 : 1, showlegend: !(gray && plots.onPaper()),
         mode: this.spec.kind === "points" ? "markers" : "lines+markers", opacity: picked && !chosen ? plots.FAINT : 1,
         line: { color, dash: look.dash, width: chosen ? 3.5 : gray ? 1 : 1.8 }, marker: { color, symbol: look.symbol, size: chosen ? 10 : gray ? 5 : 7 },
       };

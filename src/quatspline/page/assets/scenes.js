@@ -70,23 +70,50 @@ quatspline.Motion = class extends quatspline.Sampled {
 
 /* Log-curves in space and strips of the rates, of all schemes, by Plotly. */
 quatspline.MotionPlot = class {
+  static MANY = 200; /* keyframes: with more, curves in space are drawn when they are asked for, and keyframes not marked one by one */
+  static FINE = 1e-3; /* of a curve's extent: nearer points would fall into one pixel of the picture */
+
   constructor(place, motions) {
     const { plots, element: make } = quatspline;
     this.kind = place.dataset.motion;
     this.motions = motions;
+    this.asked = new Set();
+    this.picked = new Map();
     this.chart = make("div", { class: "chart" });
+    this.ask = make("p", { class: "ask", hidden: true });
     const redraw = () => this.draw();
     this.motion = plots.chooser("Motion", motions.map((m, i) => [String(i), m.title]), redraw);
-    place.replaceChildren(make("div", { class: "bar" }, this.motion.label), this.chart);
+    place.replaceChildren(make("div", { class: "bar" }, this.motion.label), this.ask, this.chart);
     plots.lazily(place, redraw);
   }
 
   draw() {
-    const motion = this.motions[Number(this.motion.select.value)];
-    if (this.kind === "log" && !quatspline.MotionPlot.canTurn()) {
+    const motion = this.motions[Number(this.motion.select.value)], log = this.kind === "log";
+    const waits = log && motion.knots.length > quatspline.MotionPlot.MANY && !this.asked.has(motion);
+    this.ask.hidden = !waits;
+    this.chart.hidden = waits;
+    if (waits) this._offer(motion);
+    else if (log && !quatspline.MotionPlot.canTurn()) {
       this.chart.textContent = "This browser offers no WebGL, which this plot needs; the player above turns the same curves.";
-    } else if (this.kind === "log") this._log(motion);
+    } else if (log) this._log(motion);
     else this._rates(motion);
+  }
+
+  /* A button in place of the curves; paper shows what is said beside it. */
+  _offer(motion) {
+    const { element: make } = quatspline;
+    const draw = () => { this.asked.add(motion); this.draw(); };
+    const button = make("button", { type: "button", onclick: draw }, "Draw the log-curves");
+    this.ask.replaceChildren(`${motion.title} has ${motion.knots.length} keyframes; its curves in space are drawn when asked for. `, button);
+  }
+
+  /* No more of a curve than its picture shows: a point wherever it has gone on by a pixel, and its end. */
+  static thinned(points) {
+    const { norm, add } = quatspline.geometry, axes = [0, 1, 2].map((k) => points.map((p) => p[k]));
+    const extent = Math.max(...axes.map((values) => values.reduce((m, v) => Math.max(m, v), -Infinity) - values.reduce((m, v) => Math.min(m, v), Infinity)));
+    const least = quatspline.MotionPlot.FINE * extent, kept = [];
+    points.forEach((p, i) => { if (!kept.length || i === points.length - 1 || norm(add(p, kept[kept.length - 1], -1)) >= least) kept.push(p); });
+    return kept;
   }
 
   static canTurn() {
@@ -94,44 +121,68 @@ quatspline.MotionPlot = class {
     return Boolean(canvas.getContext("webgl") || canvas.getContext("webgl2"));
   }
 
+  /* The schemes that are drawn of a motion: at first its pair, then as the reader clicks in the legend. */
+  _drawn(motion) {
+    if (!this.picked.has(motion)) this.picked.set(motion, new Set(motion.pair));
+    return this.picked.get(motion);
+  }
+
+  /* Curves of those drawn; the others stand in the legend, undecoded, and on paper not at all. */
   _traces(motion, make) {
-    const { plots } = quatspline;
+    const { plots } = quatspline, drawn = this._drawn(motion), nothing = { x: [null], y: [null], z: [null] };
     const first = motion.pair, rest = motion.schemes.filter((name) => !first.includes(name));
-    return [...first, ...rest].flatMap((name) => {
-      const look = plots.look(name);
-      const shown = { name, legendgroup: name, visible: motion.pair.includes(name) ? true : "legendonly" };
-      return make(motion.curve(name), { ...shown, line: { color: plots.seriesColor(name), dash: look.dash, width: 2 } });
+    return [...first, ...rest].filter((name) => drawn.has(name) || !plots.onPaper()).flatMap((name) => {
+      const shows = drawn.has(name), line = { color: plots.seriesColor(name), dash: plots.look(name).dash, width: 2 };
+      const traces = make(shows && motion.curve(name), { name, meta: name, visible: shows || "legendonly", line });
+      return shows ? traces : [{ ...traces[0], ...nothing }];
     });
+  }
+
+  _show(motion, traces, more) {
+    quatspline.plots.show(this.chart, traces, { ...more, uirevision: motion.name });
+    if (this.listening) return;
+    this.listening = true;
+    this.chart.on("plotly_legendclick", ({ data, curveNumber }) => this._pick(data[curveNumber].meta, (drawn, name) => { if (!drawn.delete(name)) drawn.add(name); }));
+    this.chart.on("plotly_legenddoubleclick", ({ data, curveNumber }) => this._pick(data[curveNumber].meta, (drawn, name) => { drawn.clear(); drawn.add(name); }));
+  }
+
+  /* Keyframes, which are no scheme's, are left to the plot's own ways. */
+  _pick(name, change) {
+    if (!name) return true;
+    change(this._drawn(this.motions[Number(this.motion.select.value)]), name);
+    this.draw();
+    return false;
   }
 
   _log(motion) {
     const { theme, plots, geometry } = quatspline;
+    const along = (points) => ({ x: points.map((v) => v[0]), y: points.map((v) => v[1]), z: points.map((v) => v[2]) });
     const traces = this._traces(motion, (curve, common) => [{
-      ...common, type: "scatter3d", mode: "lines", line: { ...common.line, width: 5 },
-      x: curve.log.map((v) => v[0]), y: curve.log.map((v) => v[1]), z: curve.log.map((v) => v[2]),
+      ...common, type: "scatter3d", mode: "lines", line: { ...common.line, width: 5 }, ...along(curve ? quatspline.MotionPlot.thinned(curve.log) : []),
     }]);
     const keys = motion.closed ? motion.keyframes.slice(0, -1) : motion.keyframes;
-    const points = keys.map(geometry.log);
+    const points = keys.map(geometry.log), many = points.length > quatspline.MotionPlot.MANY;
     const marker = { size: 5, color: theme.color("ground"), line: { color: theme.color("text"), width: 2 } };
     traces.push({
-      name: "keyframes", type: "scatter3d", mode: "markers+text", marker, text: points.map((_, i) => String(i)),
-      textfont: { color: theme.color("text") }, x: points.map((v) => v[0]), y: points.map((v) => v[1]), z: points.map((v) => v[2]),
+      name: "keyframes", type: "scatter3d", mode: many ? "markers" : "markers+text", visible: many ? "legendonly" : true, marker,
+      text: points.map((_, i) => String(i)), textfont: { color: theme.color("text") }, ...along(points),
     });
     const face = (text) => ({ ...plots.axis(text, false), showbackground: false, gridcolor: theme.color("line") });
     const scene = { aspectmode: "data", xaxis: face("x"), yaxis: face("y"), zaxis: face("z"), camera: { projection: { type: "orthographic" } } };
-    plots.show(this.chart, traces, { scene, uirevision: motion.name, margin: { l: 0, r: 0, t: 0, b: 0 } });
+    this._show(motion, traces, { scene, margin: { l: 0, r: 0, t: 0, b: 0 } });
   }
 
   _rates(motion) {
     const { plots, theme } = quatspline;
     const t = Array.from(motion.t, (v) => v + motion.start);
     const traces = this._traces(motion, (curve, common) => ["omega", "alpha"].map((rate, i) => ({
-      ...common, type: "scatter", mode: "lines", x: t, y: curve.norms[rate], yaxis: i ? "y2" : "y", showlegend: i === 0,
+      ...common, type: "scatter", mode: "lines", x: t, y: curve ? curve.norms[rate] : [], yaxis: i ? "y2" : "y", showlegend: i === 0,
     })));
     const line = { color: theme.color("shell"), width: 1, dash: "dot" };
-    const shapes = motion.knots.map((k) => ({ type: "line", xref: "x", yref: "paper", x0: k + motion.start, x1: k + motion.start, y0: 0, y1: 1, line, layer: "below" }));
+    const marked = motion.knots.length > quatspline.MotionPlot.MANY ? [] : motion.knots;
+    const shapes = marked.map((k) => ({ type: "line", xref: "x", yref: "paper", x0: k + motion.start, x1: k + motion.start, y0: 0, y1: 1, line, layer: "below" }));
     const upper = { ...plots.axis("|ω| (rad/t)", false), domain: [0.54, 1], rangemode: "tozero" };
     const lower = { ...plots.axis("|α| (rad/t²)", false), domain: [0, 0.46], rangemode: "tozero" };
-    plots.show(this.chart, traces, { xaxis: { ...plots.axis("t", false), showgrid: false, anchor: "y2" }, yaxis: upper, yaxis2: lower, shapes, uirevision: motion.name });
+    this._show(motion, traces, { xaxis: { ...plots.axis("t", false), showgrid: false, anchor: "y2" }, yaxis: upper, yaxis2: lower, shapes });
   }
 };

@@ -1,0 +1,79 @@
+"""What naive costs: the numbers are those of the tables, and the sentences need both schemes there."""
+
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from quatspline.findings.findings import findings
+from quatspline.findings.headlines import headlines
+from quatspline.findings.naive import CAREFUL, NAIVE, SENTENCES, headline
+from quatspline.findings.quotes import Ledger
+
+FAIRNESS = pd.DataFrame(
+    {"scheme": [NAIVE, CAREFUL], "data": "committed", "sets": 6, "median": [2.5, 1.25]}
+)
+SPEED = pd.DataFrame(
+    {
+        "scheme": [NAIVE, CAREFUL] * 2,
+        "task": ["evaluate"] * 2 + ["set-up"] * 2,
+        "keyframes": 1000,
+        "nanoseconds_per_item": [4.0, 600.0, 50.0, 5500.0],
+    }
+)
+
+
+def reader(**changed):
+    tables = {"fairness": FAIRNESS, "speed": SPEED} | changed
+
+    def read(name):
+        if name not in tables:
+            raise FileNotFoundError(name)
+        return tables[name]
+
+    return read
+
+
+def told(found) -> str:
+    return "\n".join(finding.text for finding in found if NAIVE in finding.text)
+
+
+def test_the_numbers_are_those_of_the_tables():
+    text = told(findings(reader()))
+    assert f"{NAIVE} has 2.5000 times" in text
+    assert "in the median of 6 committed" in text
+    assert "RotationSpline 1.2500 times" in text
+    assert "4 ns" in text
+    assert "600 ns" in text
+    assert "50 and 5.5e+03 ns per keyframe, of 1000" in text
+
+
+def test_the_headline_tells_how_many_times_as_long_the_careful_one_takes():
+    text = told(headlines(reader()))
+    assert "2.500 times the least torque, scipy's `RotationSpline` 1.250 times" in text
+    assert "150 times as long per sample and 110 times per keyframe" in text
+
+
+@pytest.mark.parametrize("sentence", [*(each for _, each in SENTENCES), headline])
+def test_no_digit_is_written_by_hand(sentence):
+    written = [part for part in sentence(Ledger(reader())) if isinstance(part, str)]
+    assert not re.search(r"\d", "".join(written))
+
+
+LESS = {
+    "a scheme is not in the table": {
+        "fairness": FAIRNESS[FAIRNESS["scheme"] != NAIVE],
+        "speed": SPEED[SPEED["scheme"] != CAREFUL],
+    },
+    "a scheme has no number": {
+        "fairness": FAIRNESS.assign(median=[2.5, np.inf]),
+        "speed": SPEED.assign(nanoseconds_per_item=[np.nan, 600.0, np.nan, 5500.0]),
+    },
+}
+
+
+@pytest.mark.parametrize("tables", LESS.values(), ids=LESS.keys())
+def test_they_are_left_out_without_both_schemes(tables):
+    assert not told(findings(reader(**tables)))
+    assert not told(headlines(reader(**tables)))
