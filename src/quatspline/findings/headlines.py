@@ -42,8 +42,8 @@ def _local(cell: Ledger) -> tuple[Part, ...]:
     names = ("local-quintic", "quartic", "slerp")
     return said(
         "**Smooth and local need not be wasteful.** `local-quintic` (ours) is C², solves nothing and has {ours:.3f} "
-        "times the least torque, the paper's `quartic` {paper:.2f} times. Keyframes twice as dense divide its error "
-        "by {e0:.0f}, the quartic's by {e1:.0f}, slerp's by {e2:.0f}.",
+        "times the least torque, the paper's `quartic` {paper:.2f}. Twice the keyframes divide its error by {e0:.0f}, "
+        "the quartic's by {e1:.0f}, slerp's by {e2:.0f}.",
         ours=cell("fairness", "median", scheme="local-quintic", data="committed"),
         paper=cell("fairness", "median", scheme="quartic", data="committed"),
         **{
