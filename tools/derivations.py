@@ -168,6 +168,14 @@ SHOWN: dict[str, Shown] = {
         around=6,
         options={"smoothing": 1.0},
     ),
+    "least-squares": Shown(
+        "least-squares",
+        _turned(0, 0, 0, 0, 90, 90, 90, 90),
+        0,
+        ("kim", "least-squares"),
+        cumulative=True,
+        around=6,
+    ),
 }
 """By the name of the page's file."""
 

@@ -366,7 +366,9 @@ def test_cells_that_cannot_be_told_apart_are_refused(bench: Bench) -> None:
 @pytest.fixture(name="local", scope="module")
 def local_cluster() -> Iterator:
     distributed = pytest.importorskip("distributed")
-    with distributed.LocalCluster(2, threads_per_worker=1, dashboard_address=":0") as local:
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, dashboard_address=":0"
+    ) as local:
         yield local
 
 
@@ -402,7 +404,9 @@ def test_a_worker_of_several_threads_measures_one_cell_at_a_time(bench: Bench) -
     time.sleep(0.1)  # in which another thread would come
     (HERE / "inside").unlink()"""
     )
-    with distributed.LocalCluster(1, threads_per_worker=2, dashboard_address=":0") as local:
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=2, dashboard_address=":0"
+    ) as local:
         assert bench.run(dask=local.scheduler_address) == []
     assert bench.measured() == dict.fromkeys(range(COUNT), 1)
     assert len(bench.workers()) == 1
@@ -432,7 +436,7 @@ def test_a_cell_that_kills_every_dask_worker_is_told_and_the_others_are_kept(ben
     distributed = pytest.importorskip("distributed")
     bench.experiment("if x == 3: os.kill(os.getpid(), signal.SIGKILL)")
     with (
-        distributed.LocalCluster(1, threads_per_worker=1, dashboard_address=":0") as own,
+        distributed.LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=":0") as own,
         bench.popen("--dask", own.scheduler_address) as process,
     ):
         said = process.communicate()[1]
@@ -451,7 +455,7 @@ def test_a_cluster_whose_last_worker_leaves_is_told(
     monkeypatch.setattr(cluster, "LOOK", 0.2)
     monkeypatch.setattr(cluster, "ALONE", 1.0)
     bench.experiment("if x == 3: os.kill(os.getpid(), signal.SIGKILL)")
-    with distributed.LocalCluster(0, dashboard_address=":0") as own:
+    with distributed.LocalCluster(n_workers=0, dashboard_address=":0") as own:
         line = [sys.executable, "-m", "distributed.cli.dask_worker", own.scheduler_address]
         with subprocess.Popen([*line, "--no-nanny", "--nthreads", "1"], stderr=subprocess.DEVNULL):
             assert bench.run(dask=own.scheduler_address) == ["swept"]

@@ -34,7 +34,7 @@ def time(cell: Ledger) -> tuple[Part, ...]:
     }
     return said(
         f"What naive costs in time: a sample takes {{e0:.3g}} ns by {NAIVE}, compiled here, and {{e1:.3g}} ns by "
-        "scipy's RotationSpline; set-up {s0:.3g} and {s1:.3g} ns per keyframe, of {keyframes:d}.",
+        "scipy's RotationSpline; set-up {s0:.3g} and {s1:.3g} ns per keyframe, of {keyframes:.0f}.",
         keyframes=cell("speed", "keyframes", scheme=NAIVE, task="set-up"),
         **times,
     )
@@ -64,7 +64,7 @@ def _time(cell: Ledger, name: str, task: str) -> Cell:
 
 def _measured(number: Cell, name: str) -> Cell:
     """A cell with a number; a scheme that is absent or was refused leaves the sentence out."""
-    if not math.isfinite(number.value):
+    if isinstance(number.value, float) and not math.isfinite(number.value):
         raise LookupError(f"{name} has no number there")
     return number
 
