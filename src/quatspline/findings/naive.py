@@ -43,9 +43,8 @@ def time(cell: Ledger) -> tuple[Part, ...]:
 def headline(cell: Ledger) -> tuple[Part, ...]:
     """Both, in plain words."""
     return said(
-        f"**What naive costs.** Cubics through the quaternions' numbers (`{NAIVE}`) have {{naive:.3f}} times the least "
-        f"torque, at steps of {LARGE} {{large:.3g}}; scipy's `RotationSpline` {{careful:.3f}} and "
-        "{careful_large:.3g}, for {sample:.0f} times the time per sample.",
+        f"**What naive costs.** `{NAIVE}` has {{naive:.3f}} times the least torque, at steps of {LARGE} {{large:.3g}}; "
+        "scipy's `RotationSpline` {careful:.3f} and {careful_large:.3g}, for {sample:.0f} times the time per sample.",
         naive=_torque(cell, NAIVE),
         large=_torque(cell, NAIVE, LARGE),
         careful=_torque(cell, CAREFUL),
