@@ -15,11 +15,12 @@ def torque(cell: Ledger) -> tuple[Part, ...]:
     """What it costs in torque."""
     return said(
         f"What naive costs in torque: over the least, in the median of {{sets:d}} committed keyframe sets, {NAIVE} has "
-        f"{{naive:.4f}} and scipy's RotationSpline {{careful:.4f}}; at steps of {LARGE}, {{naive_large:.3g}} and "
+        f"{{naive:.4f}} and scipy's RotationSpline {{careful:.4f}}; at steps of {{where}}, {{naive_large:.3g}} and "
         "{careful_large:.3g}.",
         sets=cell("fairness", "sets", scheme=NAIVE, data="committed"),
         naive=_torque(cell, NAIVE),
         careful=_torque(cell, CAREFUL),
+        where=cell("fairness", "data", scheme=NAIVE, data=LARGE),
         naive_large=_torque(cell, NAIVE, LARGE),
         careful_large=_torque(cell, CAREFUL, LARGE),
     )
@@ -43,9 +44,10 @@ def time(cell: Ledger) -> tuple[Part, ...]:
 def headline(cell: Ledger) -> tuple[Part, ...]:
     """Both, in plain words."""
     return said(
-        f"**What naive costs.** `{NAIVE}` has {{naive:.3f}} times the least torque, at steps of {LARGE} {{large:.3g}}; "
-        "scipy's `RotationSpline` {careful:.3f} and {careful_large:.3g}, for {sample:.0f} times the time per sample.",
+        f"**What naive costs.** `{NAIVE}` has {{naive:.3f}} times the least torque, at steps of {{where}} {{large:.3g}}; "
+        "scipy's `RotationSpline` {careful:.3f} and {careful_large:.3g}, at {sample:.0f} times the time.",
         naive=_torque(cell, NAIVE),
+        where=cell("fairness", "data", scheme=NAIVE, data=LARGE),
         large=_torque(cell, NAIVE, LARGE),
         careful=_torque(cell, CAREFUL),
         careful_large=_torque(cell, CAREFUL, LARGE),
