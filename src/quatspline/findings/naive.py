@@ -44,8 +44,8 @@ def time(cell: Ledger) -> tuple[Part, ...]:
 def headline(cell: Ledger) -> tuple[Part, ...]:
     """Both, in plain words."""
     return said(
-        f"**What naive costs.** `{NAIVE}` has {{naive:.3f}} times the least torque, at steps of {{where}} {{large:.3g}}; "
-        "scipy's `RotationSpline` {careful:.3f} and {careful_large:.3g}, at {sample:.0f} times the time.",
+        f"**What naive costs.** `{NAIVE}` has {{naive:.3f}} times the least torque, at steps of {{where}} "
+        "{large:.3g}; scipy's `RotationSpline` {careful:.3f} and {careful_large:.3g}, at {sample:.0f} times the time.",
         naive=_torque(cell, NAIVE),
         where=cell("fairness", "data", scheme=NAIVE, data=LARGE),
         large=_torque(cell, NAIVE, LARGE),
