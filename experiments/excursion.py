@@ -157,7 +157,7 @@ def _ranges(
         looks = style.scheme_style(name)
         colour = looks["color"] if name in COLOURED else GREY
         ax.hlines(y, low.iloc[y], high.iloc[y], color=colour, lw=1.6)
-        ax.plot(low.iloc[y], y, color=colour, marker=looks["marker"], ms=4)
+        ax.plot(low.iloc[y], y, **looks | {"color": colour, "linestyle": ""}, ms=4)
         ax.plot(high.iloc[y], y, color=colour, marker="|", ms=6)
 
 

@@ -188,8 +188,7 @@ def _excess(ax: Any, rows: pd.DataFrame, names: list[str]) -> None:
     excess = {key: (rows[key] - 1.0).clip(lower=1e-6) for key in ("least", "median", "worst")}
     ax.hlines(y, excess["least"], excess["worst"], color="#bbbbbb", lw=2)
     for x, height, name in zip(excess["median"], y, names, strict=True):
-        looks = style.scheme_style(name)
-        ax.plot(x, height, color=looks["color"], marker=looks["marker"], ms=4.5)
+        ax.plot(x, height, **style.scheme_style(name) | {"linestyle": ""}, ms=4.5)
     ax.set(xscale="log", xlabel="excess of torque energy", title="committed sets")
     scheme_rows(ax, names)
 

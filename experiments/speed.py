@@ -129,7 +129,7 @@ def draw(table: pd.DataFrame) -> Figure:
                     rows.loc[floor, "nanoseconds_per_item"], color="#999999", ls=dash, lw=0.8
                 )
         unit = rows["unit"].drop(MULTIPLY_ADD, errors="ignore").iloc[0]
-        ax.set(xscale="log", title=task, xlabel=f"ns a {unit}", yticks=range(len(names)))
+        ax.set(xscale="log", title=task, xlabel=f"ns per {unit}", yticks=range(len(names)))
     panels[0, 0].set_yticklabels(names)
     panels[0, 0].set_ylim(-0.7, len(names) - 0.3)
     style.letters(panels[0])
@@ -138,7 +138,7 @@ def draw(table: pd.DataFrame) -> Figure:
 
 def caption(table: pd.DataFrame) -> str:
     return (
-        "Cost per sample of evaluating sorted samples of a curve through a thousand keyframes, of one sample a call, "
+        "Cost per sample of evaluating sorted samples of a curve through a thousand keyframes, of one sample per call, "
         "and per keyframe of its set-up, medians; hollow: third-party libraries. Grey lines are floors: "
-        "writing the result (solid), one sine and cosine a sample (dotted)."
+        "writing the result (solid), one sine and cosine per sample (dotted)."
     )
