@@ -6,7 +6,7 @@ import os
 import signal
 import subprocess
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -40,6 +40,17 @@ WAITS = {
 
 RUN = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL]
 LINE = "quatspline: interrupted: the same command goes on where it stopped"
+
+
+@pytest.fixture(autouse=True)
+def heeded() -> Iterator[None]:
+    """Under nohup, or in the background of a script, signals are ignored, and a run leaves them so."""
+    ignored = [n for n in RUN if signal.getsignal(n) is signal.SIG_IGN]
+    for n in ignored:
+        signal.signal(n, signal.SIG_DFL)
+    yield
+    for n in ignored:
+        signal.signal(n, signal.SIG_IGN)
 
 
 @pytest.fixture
