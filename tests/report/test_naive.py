@@ -50,7 +50,7 @@ def test_the_numbers_are_those_of_the_tables():
     assert "RotationSpline 1.2500; at steps of 170 degrees, 7.5 and 3.25." in text
     assert "4 ns" in text
     assert "600 ns" in text
-    assert "50 and 5.5e+03 ns per keyframe, of 1000" in text
+    assert "50 and 5500 ns per keyframe, of 1000" in text
 
 
 def test_the_headline_tells_how_many_times_as_long_the_careful_one_takes():

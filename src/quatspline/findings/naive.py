@@ -29,13 +29,13 @@ def torque(cell: Ledger) -> tuple[Part, ...]:
 def time(cell: Ledger) -> tuple[Part, ...]:
     """What it costs in time."""
     times = {
-        f"{task[0]}{i}": _time(cell, name, task)
+        f"{task[0]}{i}": Quote((_time(cell, name, task),), "rounded")
         for task in ("evaluate", "set-up")
         for i, name in enumerate((NAIVE, CAREFUL))
     }
     return said(
-        f"What naive costs in time: a sample takes {{e0:.3g}} ns by {NAIVE}, compiled here, and {{e1:.3g}} ns by "
-        "scipy's RotationSpline; set-up {s0:.3g} and {s1:.3g} ns per keyframe, of {keyframes:.0f}.",
+        f"What naive costs in time: a sample takes {{e0:g}} ns by {NAIVE}, compiled here, and {{e1:g}} ns by "
+        "scipy's RotationSpline; set-up {s0:g} and {s1:g} ns per keyframe, of {keyframes:.0f}.",
         keyframes=cell("speed", "keyframes", scheme=NAIVE, task="set-up"),
         **times,
     )
