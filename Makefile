@@ -81,7 +81,7 @@ report: $(VENV)/run ## Write results/report.html again from the tables that are 
 test: $(VENV)/test lint docs ## Lint, types, docs and all tests
 	@$(BIN)/python -m pytest -n 2 --dist worksteal -q
 
-torture: $(VENV)/test ## Kill, corrupt and fill what runs write; bad plug-ins, hostile files: SHARE=0.1 of the counts, MINUTES=60 at most
+torture: $(VENV)/test ## Kill, corrupt and fill what runs write; bad plug-ins, hostile files: SHARE=0.1 of the counts, MINUTES=120 at most
 	@$(BIN)/python tests/robustness/torture.py $${SHARE:+--share "$$SHARE"} $${MINUTES:+--minutes "$$MINUTES"}
 
 docs: $(VENV)/test ## Build docs into site/; broken links, citations and formulas fail

@@ -93,7 +93,7 @@ class Tiny:
     def start(self, *more: object, jobs: int = 2, **options: Any) -> subprocess.Popen[str]:
         """Begin the command: both experiments into the folder."""
         line = [sys.executable, "-m", "quatspline", "run", *EXPERIMENTS]
-        line += ["--jobs", str(jobs), *map(str, more)]
+        line += ["--jobs", str(jobs), "--out", str(self.out), *map(str, more)]
         given = {"env": self.environment, "cwd": self.folder, "start_new_session": True} | options
         pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
         return subprocess.Popen(line, **pipes, **given)
@@ -115,11 +115,9 @@ class Tiny:
         read = {name: pd.read_csv(p, **blank) for name, p in paths.items() if p.exists()}
         return {name: table.drop(columns=TIMINGS) for name, table in read.items()}
 
-    def began(self) -> int:
-        """When a run last wrote the manifest, in ns; 0 where none has."""
-        with suppress(OSError):
-            return (self.out / MANIFEST).stat().st_mtime_ns
-        return 0
+    def began(self) -> bool:
+        """Whether a run has written the manifest."""
+        return (self.out / MANIFEST).exists()
 
     def kept(self) -> set[tuple[str, str]]:
         """The whole lines of the journals, each with the experiment that it is of."""

@@ -2,7 +2,7 @@
 
 By hand, bounded in count and time (the share of every trial, minutes in all):
 
-    python tests/robustness/torture.py --share 1 --minutes 60
+    python tests/robustness/torture.py --share 1 --minutes 120
 
 After every trial the same command has to finish, and its tables must equal those of a run that nothing
 happened to, in all columns but timings.  The table counts what was tried, what survived, cells lost,
@@ -21,6 +21,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -30,9 +31,7 @@ import plugins
 from tiny import TRIED, Tiny, same
 
 KINDS = ["SIGINT", "SIGTERM", "SIGHUP", "SIGKILL", "writes", "corruptions", "together", "plug-ins"]
-KINDS += ["files", "full", "read-only"]
-IN_A_ROW = 4
-"""Kills of one run, each while it goes on after the last, before it is let finish and compared."""
+KINDS += ["files", "full", "large", "read-only"]
 SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL]
 
 
@@ -101,20 +100,16 @@ class Torture:
         """A signal at random moments after the run has begun its manifest, jobs 1 to 3."""
         tally = Tally(f"{number.name} at random moments")
         for i in self._times(tally, count):
-            if i % IN_A_ROW == 0:
-                self.tiny.clear()
-            earlier = self.tiny.began()
+            self.tiny.clear()
             process = self.tiny.start(jobs=1 + i % 3)
-            while self.tiny.began() == earlier and process.poll() is None:
+            while not self.tiny.began() and process.poll() is None:
                 time.sleep(0.005)
             time.sleep(self.rng.uniform(0.0, self.usual))
             before = self.tiny.kept()
             process.send_signal(number)
             said = process.communicate(timeout=60)[1]
             fine = process.returncode in (0, -number, 128 + number)
-            last = (i + 1) % IN_A_ROW == 0 or i + 1 == count or time.monotonic() > self.until
-            what = f"status {process.returncode}"
-            self._after(tally, before, said, fine=fine, what=what, finish=last)
+            self._after(tally, before, said, fine=fine, what=f"status {process.returncode}")
         return tally
 
     def writes(self, count: int) -> Tally:
@@ -145,11 +140,10 @@ class Torture:
         *,
         fine: bool,
         what: str,
-        finish: bool = True,
     ) -> None:
         """Count a trial that ended a run: what is left of it, and whether it goes on."""
         orphans, lost = self.tiny.orphans(), self.tiny.lost(before)
-        well, more = self._finish() if finish else (True, "")
+        well, more = self._finish()
         tally.count(fine and well, said + more, lost=lost, orphaned=len(orphans), what=what)
 
     # -- corruptions ----------------------------------------------------------------------------
@@ -225,7 +219,7 @@ class Torture:
         tally = Tally("bad plug-ins")
         for i in self._times(tally, len(groups)):
             tiny = Tiny(self.folder / f"plug-in {i}", *groups[i], limits=limits)
-            status, said = tiny.run()
+            status, said = tiny.run(jobs=1 + i % 2)
             wrong = _wrong(tiny.tables(), self.expected, groups[i])
             orphans = tiny.orphans()
             what = f"{groups[i]}: status {status}: {wrong}"
@@ -250,36 +244,68 @@ class Torture:
         return tally
 
     def full_disks(self, count: int) -> Tally:
-        """No room for files beyond some size: told in a line, and nothing that was whole is lost."""
+        """A disk with room for a few pages: told in a line, and finished when there is more."""
         tally = Tally("a full disk")
+        with self._disk() as place:
+            for _ in self._times(tally, count if place else 0):
+                room = self.rng.randrange(12)
+                ballast = place / "ballast"
+                ballast.write_bytes(bytes(shutil.disk_usage(place).free - room * PAGE))
+                status, said = self.tiny.run()
+                ballast.unlink()
+                self._refused(tally, status, said, f"{room} pages")
+                self.tiny.clear()
+        return tally
+
+    def large_files(self, count: int) -> Tally:
+        """No file may exceed a size: told in a line, and finished where it may."""
+        tally = Tally("files limited in size")
         resource = __import__("resource")
         for _ in self._times(tally, count):
             self.tiny.clear()
             room = self.rng.randrange(0, 4000)
             limit = (resource.RLIMIT_FSIZE, (room, room))
             status, said = self.tiny.run(preexec_fn=lambda limit=limit: resource.setrlimit(*limit))
-            last = said.splitlines()[-1:] or [""]
-            fine = status == 0 or (status == 1 and "cannot be written" in last[0])
-            well, more = self._finish()
-            orphans = len(self.tiny.orphans())
-            tally.count(fine and well, said + more, orphaned=orphans, what=f"{room} bytes")
+            self._refused(tally, status, said, f"{room} bytes")
         return tally
+
+    def _refused(self, tally: Tally, status: int, said: str, what: str) -> None:
+        """Count a run that could not write all: it said so, and goes on where it can."""
+        last = said.splitlines()[-1:] or [""]
+        fine = status == 0 or (status == 1 and "cannot be written" in last[0])
+        self._after(tally, self.tiny.kept(), said, fine=fine, what=f"{what}: status {status}")
 
     def read_only(self, count: int) -> Tally:
-        """A disk that cannot be written: told in a line."""
+        """A disk that cannot be written: told in a line, and finished where it can."""
         tally = Tally("a read-only disk")
-        place = self.folder / "disk"
-        place.mkdir(exist_ok=True)
-        if _mount(place, "-t", "tmpfs", "-o", "ro", "none"):
-            try:
-                for _ in self._times(tally, count):
-                    status, said = self.tiny.run("--out", place / "results")
-                    fine = status in (1, 2) and len(said.splitlines()) == 1
-                    tally.count(fine, said, orphaned=len(self.tiny.orphans()), what=f"{status}")
-            finally:
-                subprocess.run(["umount", str(place)], check=False)
+        with self._disk() as place:
+            for _ in self._times(tally, count if place else 0):
+                _mount(place, "-o", "remount,ro")
+                status, said = self.tiny.run()
+                _mount(place, "-o", "remount,rw")
+                fine = status in (1, 2) and len(said.splitlines()) == 1
+                self._after(tally, self.tiny.kept(), said, fine=fine, what=f"status {status}")
+                self.tiny.clear()
         return tally
 
+    @contextmanager
+    def _disk(self) -> Iterator[Path | None]:
+        """A small file system that the results are put on; None where mounting is not allowed."""
+        place = self.folder / "disk"
+        place.mkdir(exist_ok=True)
+        if not _mount(place, "-t", "tmpfs", "-o", "size=1m", "none"):
+            yield None
+            return
+        usual, self.tiny.out = self.tiny.out, place / "results"
+        try:
+            yield place
+        finally:
+            self.tiny.out = usual
+            subprocess.run(["umount", str(place)], check=False)
+
+
+PAGE = 4096
+"""Bytes that a file system gives to a file at once."""
 
 HOOK = """
 import os, signal, sys
@@ -379,6 +405,7 @@ def trials(torture: Torture, share: float) -> Iterator[tuple[str, Callable[[], T
     made = hostile.files(torture.folder / "hostile", torture.rng, times(150), times(10))
     yield "files", lambda: torture.files(list(made))
     yield "full", lambda: torture.full_disks(times(20))
+    yield "large", lambda: torture.large_files(times(20))
     yield "read-only", lambda: torture.read_only(times(3))
 
 
@@ -386,7 +413,7 @@ def main() -> int:
     """Run the trials and print the table; status 1 where something did not survive."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--share", type=float, default=1.0, help="of the counts of all trials")
-    parser.add_argument("--minutes", type=float, default=60.0, help="after which no trial begins")
+    parser.add_argument("--minutes", type=float, default=120.0, help="after which no trial begins")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--only", metavar="KIND,...", help=f"of {', '.join(KINDS)}")
     given = parser.parse_args()
