@@ -127,6 +127,41 @@ def test_seconds_are_those_of_the_unit_that_was_told() -> None:
     assert "(0.5 s and 1.5 s after the first)" in line
 
 
+def test_a_motion_that_ends_where_it_began_closes() -> None:
+    """As a camera's loop in a CSV does: a turn, and a swing to and fro."""
+    said = (
+        "Warning: the last keyframe is 0 degrees from the first, 5 s later: the motion closes. If it goes on from there "
+        "as it began, say --closed, which takes the last row for the return; without it the curve has two ends there."
+    )
+    assert warned(TIMES, spin(0, 90, 180, 270, 360)) == [said]
+    assert warned(TIMES, spin(10, 30, 50, 30, 10)) == [said]
+    assert warned(TIMES / 2.0, spin(0, 90, 180, 270), closed=True) == []
+
+
+@pytest.mark.parametrize(
+    ("degrees", "said"),
+    [
+        ((0, 90, 180, 270, 359), "is 1 degrees from the first, 5 s later"),
+        ((0, 20, 40, 20, 4), None),  # by less than a step, and not by a slip
+        ((0, 0.004, 0.006, 0.002, 0.0009), None),  # never away
+        ((0, 90, 0), None),
+        ((0, 90), None),
+    ],
+)
+def test_ends_that_nearly_meet(degrees: tuple[float, ...], said: str | None) -> None:
+    lines = warned(TIMES[-1] * np.linspace(0.0, 1.0, len(degrees)), spin(*degrees), told=True)
+    assert len(lines) == (said is not None)
+    for line in lines:
+        assert str(said) in line
+        assert "--closed, which asks that its last row repeat the first" in line
+
+
+def test_a_walk_that_stays_near_its_beginning_does_not_close() -> None:
+    rng = np.random.default_rng(1)
+    shaken = quaternion.exp(0.5 * np.radians(0.5) * rng.normal(size=(200, 3)))
+    assert not any("closes" in line for line in warned(np.arange(200) / 50.0, shaken))
+
+
 def test_noise_is_said_of_recordings_and_not_of_walks() -> None:
     rng = np.random.default_rng(0)
     spun = spin(*np.linspace(0.0, 60.0, 200))

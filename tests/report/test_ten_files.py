@@ -29,7 +29,9 @@ WARNED = {
     "camera-path": ["as frame numbers do"],
     "spacecraft-with-holds": ["are equal (the first of # holds): while they stand still"],
     "noisy-slam": ["degrees of noise about each axis"],
-    "hinge": ["are equal: while they stand still"],
+    "walk-cycle": ["the motion closes"],
+    "turntable": ["the motion closes"],
+    "hinge": ["are equal: while they stand still", "the motion closes"],
     "closed-loop": ["step between keyframes # and #"],
     "two-keyframes": ["it goes the other way round"],
 }

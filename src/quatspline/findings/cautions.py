@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 import pandas as pd
 
+from quatspline import quaternion
 from quatspline.catalogue import called
 from quatspline.findings.candidates import direct, rank, smooth, still, usable
 from quatspline.findings.findings import Finding
@@ -19,6 +20,7 @@ from quatspline.instruments.excursion import HOLD
 from quatspline.instruments.own_keyframes import steps
 from quatspline.instruments.trials import Row, records
 from quatspline.keyframes import Keyframes
+from quatspline.motion.closing import REPEATED, nearly
 from quatspline.motion.summary import GAP
 from quatspline.quaternion import FloatArray
 
@@ -35,10 +37,15 @@ ROUNDING = 1e-6
 """Degrees within which half a turn is exactly that."""
 CROWDED = 0.01
 """A spacing below this share of the median: two keyframes at almost the same time."""
-REPEATED, ENOUGH = 0.2, 20
+COPIES, ENOUGH = 0.2, 20
 """The share of steps from which on holds are repeated samples, and the steps that tell."""
 LISTED = 4
 """Steps that a sentence names."""
+
+LOOP = 4
+"""Keyframes of the least motion that goes round: three, and the return."""
+APART = 10.0
+"""The ends agree where the motion went this many times as far away."""
 
 COARSE, FINE = 1e4, 1e6
 """Median spacings from which on times count microseconds, or nanoseconds: in seconds they would be hours apart."""
@@ -64,6 +71,7 @@ def cautions(
         *_holds(angles, pair, frame),
         *_half_turns(angles, pair),
         *_wide(angles, pair),
+        *_closing(keyframes, angles, second),
         *_noise(frame),
     ]
     return [Finding(WARNING, ("Warning: ", *parts)) for parts in said]
@@ -120,7 +128,7 @@ def _holds(angles: FloatArray, pair: Pair, frame: pd.DataFrame) -> Iterator[list
     still = np.flatnonzero(np.radians(angles) < HOLD)
     if not still.size or still.size == angles.size:
         return
-    if still.size >= REPEATED * angles.size and angles.size >= ENOUGH:
+    if still.size >= COPIES * angles.size and angles.size >= ENOUGH:
         yield [
             f"{still.size} of {angles.size} steps do not turn at all, as where samples are repeated: leave the copies "
             "out, or every curve stops and starts at each."
@@ -173,6 +181,24 @@ def _wide(angles: FloatArray, pair: Pair) -> Iterator[list[Part]]:
             f"the step between {pair(k)} is {significant(float(angles[k]))} degrees"
             f"{_others(wide.size, f'step over {WIDE:g}')}: schemes differ most where steps are that wide, and a "
             "keyframe between them settles more than any choice of scheme."
+        ]
+
+
+def _closing(keyframes: Keyframes, angles: FloatArray, second: float) -> Iterator[list[Part]]:
+    """Open keyframes that end where they began, after they were elsewhere."""
+    q = keyframes.quaternions
+    away = quaternion.distance(q, q[:1])
+    gap, median = float(away[-1]), float(np.median(np.radians(angles)))
+    exact = gap < REPEATED
+    if keyframes.closed or len(q) < LOOP or max(away) < max(HOLD, APART * gap):
+        return
+    if exact or nearly(gap, median):
+        off = significant(float(np.degrees(gap))) if gap > np.radians(ROUNDING) else "0"
+        later = significant(float(keyframes.knots[-1]) / second)
+        row = "takes the last row for the return" if exact else "asks that its last row repeat the first"
+        yield [
+            f"the last keyframe is {off} degrees from the first, {later} s later: the motion closes. If it goes on from "
+            f"there as it began, say --closed, which {row}; without it the curve has two ends there."
         ]
 
 

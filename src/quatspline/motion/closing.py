@@ -28,6 +28,11 @@ def opened(motion: Motion) -> Motion:
     return motion
 
 
+def nearly(gap: float, median: float) -> bool:
+    """Whether a last orientation this far from the first may be meant to repeat it, by the median step (rad)."""
+    return gap < min(NEARLY, SHARE * median)
+
+
 def returning(motion: Motion) -> Motion:
     """A motion closed: n keyframes and n + 1 times.
 
@@ -44,7 +49,7 @@ def returning(motion: Motion) -> Motion:
         into, out = _tangents_round(motion)
         return replace(motion, quaternions=q[:-1], in_tangents=into, out_tangents=out)
     near = f"the last row is {np.degrees(gap):.2g} degrees from the first orientation"
-    ambiguous = gap < min(NEARLY, SHARE * _median_step(q))
+    ambiguous = nearly(gap, _median_step(q))
     if not prepare(t, q).uniform:
         raise ValueError(
             "closed: times are not uniform, so the last row must repeat the first orientation "
