@@ -193,7 +193,7 @@ def _closing(keyframes: Keyframes, angles: FloatArray, second: float) -> Iterato
     if keyframes.closed or len(q) < LOOP or max(away) < max(HOLD, APART * gap):
         return
     if exact or nearly(gap, median):
-        off = significant(float(np.degrees(gap))) if gap > np.radians(ROUNDING) else "0"
+        off = f"is {significant(float(np.degrees(gap)))} degrees from the first"
         later = significant(float(keyframes.knots[-1]) / second)
         row = (
             "takes the last row as the return"
@@ -201,8 +201,8 @@ def _closing(keyframes: Keyframes, angles: FloatArray, second: float) -> Iterato
             else "needs a last row that repeats the first"
         )
         yield [
-            f"the last keyframe is {off} degrees from the first, {later} s later, so the motion may be a loop. If it "
-            f"is, use --closed, which {row}. Without it the curve has two separate ends."
+            f"the last keyframe {'repeats the first' if exact else off}, {later} s later. For a loop, use --closed, "
+            f"which {row}."
         ]
 
 

@@ -58,7 +58,7 @@ def _all(table: Table) -> str:
 
 
 def _reach(row: Row) -> str:
-    nearby = "is local: a changed keyframe changes the curve only nearby"
+    nearby = "is local: edits stay nearby"
     whole = "is global: every keyframe shapes the whole curve"
     return whole if row["support"] == "all" else nearby
 
