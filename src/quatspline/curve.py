@@ -132,7 +132,7 @@ class Curve(abc.ABC):
             cls.name = Path(file).stem.replace("_", "-")
         stated = cls.__dict__.get("operations", UNSTATED)
         if not (isinstance(stated, Operations) or hasattr(stated, "__get__")):
-            raise TypeError(f"operations of {cls.name} is no Operations: {stated!r}")
+            raise TypeError(f"operations of {cls.name}: expected an Operations, found {stated!r}")
 
     def __init__(
         self,

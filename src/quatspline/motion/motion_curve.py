@@ -62,7 +62,7 @@ class MotionCurve:
             if b - a > 1
         ]
         if not self.pieces:
-            raise ValueError(f"{len(motion.stamps)} frames are no curve: at least 2 are needed")
+            raise ValueError(f"a curve needs at least 2 frames, found {len(motion.stamps)}")
         self.errors: dict[str, Exception] = {}
         for piece in self.pieces:
             self.errors = piece.errors | self.errors
@@ -98,7 +98,9 @@ class MotionCurve:
         if self.motion.positions is None:
             raise ValueError("the motion has no positions")
         if not isinstance(self.family, families.SplineFamily):
-            raise ValueError("the positions are no B-spline: a scheme with a degree makes them one")
+            raise ValueError(
+                "the positions are not a B-spline: only schemes with a degree make them one"
+            )
         times = self.orientation.keyframes.knots
         x = self.motion.positions[self.pieces[0].index]
         return self.family.fitted(times, x, self.motion.closed and np.array_equal(x[0], x[-1]))

@@ -76,7 +76,9 @@ def reduction(
     if motion.closed or len(motion.stamps) < 2:
         raise ValueError("an open motion of at least 2 frames is expected")
     if not catalogue.scheme(scheme).interpolates:
-        raise ValueError(f"{scheme} passes near its keyframes: no choice of them keeps a bound")
+        raise ValueError(
+            f"{scheme} passes near its keyframes, so no choice of keyframes keeps a bound"
+        )
     names = list(motion.tracks)
     groups = [slice(0, len(names))] if together else [slice(k, k + 1) for k in range(len(names))]
     source = quaternion.normalise(motion.quaternions)
