@@ -48,7 +48,8 @@ def draw_curves(ax: Any, curves: Iterable[tuple[str, pd.Series, pd.Series]]) -> 
         ax.plot(x, y, **look)
         finite = np.isfinite(y.to_numpy(dtype=float))
         if name in NAMED and finite.any():
-            ends[name] = End(x[finite].iloc[-1], y[finite].iloc[-1], called(name), look["color"])
+            tip = (x[finite].iloc[-1], y[finite].iloc[-1])
+            ends[name] = End(*tip, called(name), look["color"], look["linestyle"])
     return ends
 
 
