@@ -40,6 +40,9 @@ BUDGET = Budget(limit=1e8, meter=calls)
 SAMPLED = (40, 4, 4)
 """Samples of a segment, for its forecast: with the nine orientations of each rate that a scheme does not offer."""
 
+GUIDES = 3.7
+"""The power of the spacing that guides start at: the highest, and below the curves nevertheless."""
+
 
 def cells(run: Run) -> list[dict[str, Any]]:
     names = run.schemes or list(found())
@@ -89,7 +92,6 @@ def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
 def draw(table: pd.DataFrame) -> Figure:
     kinds = [kind for kind in KINDS if (table["knots"] == kind).any()]
     fig, panels = style.axes(style.PAGE, 3.9, 1, len(kinds), sharey=True)
-    fig.get_layout_engine().set(rect=(0.0, 0.0, named.ROOM, 1.0))
     for ax, kind in zip(panels[0], kinds, strict=True):
         groups = table[table["knots"] == kind].sort_values("keyframes").groupby("scheme")
         rows = ((str(name), each["spacing"], each["inner_angle"]) for name, each in groups)
@@ -97,6 +99,7 @@ def draw(table: pd.DataFrame) -> Figure:
         _guides(ax, table)
         ax.set(xscale="log", yscale="log", title=f"{kind} times", xlabel="keyframe spacing (t)")
         ax.invert_xaxis()
+        style.plain_log(ax.xaxis)
     panels[0, 0].set_ylabel("largest error on the inner window (rad)")
     style.letters(panels[0])
     named.name_ends(fig, {ax: ends})
@@ -106,17 +109,13 @@ def draw(table: pd.DataFrame) -> Figure:
 def _guides(ax: Any, table: pd.DataFrame) -> None:
     """Slopes 2, 3 and 4, below the curves, and the target angles, in grey."""
     far, near = table["spacing"].max(), table["spacing"].min()
-    x = np.array([np.sqrt(near * far), far])
+    x = np.array([far, np.sqrt(near * far)])
     least = table["inner_angle"].min()
     for order in (2, 3, 4):
-        y = least * (x / x[0]) ** order
+        y = least * (x / x[1]) ** order * (x[0] / x[1]) ** (GUIDES - order)
         ax.plot(x, y, color="#999999", lw=0.7, ls=":")
-        ax.annotate(
-            *(f"order {order}", (x[1], y[1]), (2, 2)),
-            textcoords="offset points",
-            fontsize=6.5,
-            color="#777777",
-        )
+        place = {"textcoords": "offset points", "va": "center", "fontsize": 6.5, "color": "#777777"}
+        ax.annotate(f"order {order}", (x[1], y[1]), (3, 0), **place)
     for degrees in TARGETS.values():
         ax.axhline(np.radians(degrees), color="#888888", lw=0.5)
         place = {"transform": ax.get_yaxis_transform(), "va": "bottom", "ha": "left"}

@@ -196,8 +196,7 @@ HEAD = 1.1
 def draw(table: pd.DataFrame) -> Figure:
     verdicts, texts = _matrices(table)
     heads = [_two_lines(str(name).replace(" degrees", "°")) for name in verdicts]
-    looks = {"heads": heads, "head": HEAD, "rotation": 90.0, "dark": DEPARTS}
-    return matrix.draw(verdicts, texts, COLORS, **looks)
+    return matrix.draw(verdicts, texts, COLORS, heads=heads, head=HEAD, rotation=90.0, dark=DEPARTS)
 
 
 def _two_lines(head: str) -> str:

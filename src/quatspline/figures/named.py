@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -22,13 +22,10 @@ NAMED = (
 SAID = f"In colour {', '.join(NAMED[:-1])} and {NAMED[-1]}, in grey all other schemes; third-party schemes are hollow."
 """For captions."""
 
-ROOM = 0.86
-"""Of the width, for axes whose curves are named at the right."""
 
-
-def looks(name: str) -> dict[str, Any]:
-    """The style of a scheme among many."""
-    known = name in NAMED
+def looks(name: str, lit: Collection[str] = NAMED) -> dict[str, Any]:
+    """The style of a scheme among many, of which those ``lit`` are in colour."""
+    known = name in lit
     own = style.scheme_style(name) if known else {"color": GREY, "marker": ".", "linestyle": "-"}
     face = {"markerfacecolor": "white", "mew": 0.7} if third_party(name) else {}  # grey ones, too
     return own | face | {"lw": 1.2 if known else 0.6, "ms": 3.2, "zorder": 3 if known else 2}
@@ -47,8 +44,11 @@ def draw_curves(ax: Any, curves: Iterable[tuple[str, pd.Series, pd.Series]]) -> 
 
 
 def name_ends(fig: Any, panels: Mapping[Any, Mapping[str, End]]) -> None:
-    """Write names right of the curves of some axes, after all else is laid out."""
+    """Write names right of the curves of some axes, after all else is laid out with the room that they take."""
+    held = [text for ax, ends in panels.items() for text in direct.hold_room(ax, ends.values())]
     fig.draw_without_rendering()
     fig.set_layout_engine("none")
+    for text in held:
+        text.remove()
     for ax, ends in panels.items():
         direct.label_ends(ax, list(ends.values()))
