@@ -112,7 +112,8 @@ def test_curves_are_named_beside_themselves_and_over_none() -> None:
             for name, y in curves.items()
         }
         assert min(away, key=away.__getitem__) == text.get_text()
-        assert ax.bbox.x0 <= box.x0 and box.x1 <= ax.bbox.x1
+        assert ax.bbox.x0 <= box.x0
+        assert box.x1 <= ax.bbox.x1
         for y in curves.values():
             assert not any(box.contains(*dot) for dot in ax.transData.transform(np.c_[x, y]))
 
