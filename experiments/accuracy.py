@@ -40,8 +40,10 @@ BUDGET = Budget(limit=1e8, meter=calls)
 SAMPLED = (40, 4, 4)
 """Samples of a segment, for its forecast: with the nine orientations of each rate that a scheme does not offer."""
 
-GUIDES = 3.7
-"""The power of the spacing that guides start at: the highest, and below the curves nevertheless."""
+GUIDES, NAMED = 0.1, 3.0
+"""How much lower than all curves guides are at the end, where the name takes that ratio of spacings."""
+EDGE = 1.1
+"""Ratio of limits to spacings."""
 
 
 def cells(run: Run) -> list[dict[str, Any]]:
@@ -93,12 +95,13 @@ def draw(table: pd.DataFrame) -> Figure:
     kinds = [kind for kind in KINDS if (table["knots"] == kind).any()]
     fig, panels = style.axes(style.PAGE, 3.9, 1, len(kinds), sharey=True)
     for ax, kind in zip(panels[0], kinds, strict=True):
-        groups = table[table["knots"] == kind].sort_values("keyframes").groupby("scheme")
+        own = table[(table["knots"] == kind) & table["inner_angle"].notna()]
+        groups = own.sort_values("keyframes").groupby("scheme")
         rows = ((str(name), each["spacing"], each["inner_angle"]) for name, each in groups)
         ends = named.draw_curves(ax, rows)
-        _guides(ax, table)
+        _guides(ax, own)
         ax.set(xscale="log", yscale="log", title=f"{kind} times", xlabel="keyframe spacing (t)")
-        ax.invert_xaxis()
+        ax.set_xlim(EDGE * own["spacing"].max(), own["spacing"].min() / EDGE)
         style.plain_log(ax.xaxis)
     panels[0, 0].set_ylabel("largest error on the inner window (rad)")
     style.letters(panels[0])
@@ -110,9 +113,9 @@ def _guides(ax: Any, table: pd.DataFrame) -> None:
     """Slopes 2, 3 and 4, below the curves, and the target angles, in grey."""
     far, near = table["spacing"].max(), table["spacing"].min()
     x = np.array([far, np.sqrt(near * far)])
-    least = table["inner_angle"].min()
+    below = GUIDES * table.loc[table["spacing"] >= x[1] / NAMED, "inner_angle"].min()
     for order in (2, 3, 4):
-        y = least * (x / x[1]) ** order * (x[0] / x[1]) ** (GUIDES - order)
+        y = below * (x[0] / x[1]) ** 2 * (x / x[0]) ** order
         ax.plot(x, y, color="#999999", lw=0.7, ls=":")
         place = {"textcoords": "offset points", "va": "center", "fontsize": 6.5, "color": "#777777"}
         ax.annotate(f"order {order}", (x[1], y[1]), (3, 0), **place)

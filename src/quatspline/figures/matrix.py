@@ -72,12 +72,20 @@ def draw(
     ax.imshow(codes.astype(float), cmap=shades, vmin=0, vmax=len(colours) - 1, aspect="auto")
     label_cells(ax, texts, kinds == dark)
     lines = {"va": "bottom", "ma": "left" if rotation else "center", "rotation": rotation}
-    ax.set_xticks(range(kinds.shape[1]), heads, fontsize=SMALL, **lines)
+    ax.set_xticks(
+        range(kinds.shape[1]), heads if rotation else _level(heads), fontsize=SMALL, **lines
+    )
     scheme_rows(ax, [_row(name, others) for name, others in rows.items()])
     ax.tick_params(length=0, top=True, labeltop=True, bottom=False, labelbottom=False)
     _ruled(ax, kinds.shape)
     _key(fig, {kind: colours[kind] for kind in colours if (kinds == kind).any(axis=None)})
     return fig
+
+
+def _level(heads: Sequence[str]) -> list[str]:
+    """Heads of as many lines as the longest has: others' last lines would stand lower."""
+    most = max(head.count("\n") for head in heads)
+    return ["\n" * (most - head.count("\n")) + head for head in heads]
 
 
 def _row(name: str, others: Sequence[str]) -> str:
