@@ -78,7 +78,7 @@ def rates(curves: Mapping[str, Curve], keyframes: Keyframes) -> Figure:
             x, y = t, np.linalg.norm(rate, axis=-1)
             x, y = largest(x, y) if long else (x, y)
             ax.plot(x, y, **look)
-            ends[ax][name] = End(x[-1], y[-1], called(name), look["color"])
+            ends[ax][name] = End(x[-1], y[-1], called(name), look["color"], look["linestyle"])
     for ax, label in zip(
         panels[:, 0], (r"$|\omega|$ (rad/t)", r"$|\alpha|$ (rad/t$^2$)"), strict=True
     ):

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from quatspline.figures.looks import Dash
 from quatspline.inputs.arrays import FloatArray
 
 GREY = "#b5b5b5"
@@ -16,16 +17,19 @@ GREY = "#b5b5b5"
 
 POINTS = 72.0
 """Of an inch."""
+LEADER = 0.7
+"""Points of the line from a curve to its name."""
 
 
 @dataclass(frozen=True)
 class End:
-    """Where a curve ends, in data, and what is written there."""
+    """Where a curve ends, in data, what is written there, and the curve's dash, which the line to it has, too."""
 
     x: float
     y: float
     text: str
     color: str
+    dash: Dash = "-"
 
 
 def spread(wanted: ArrayLike, gap: float) -> FloatArray:
@@ -67,11 +71,15 @@ def label_ends(ax: Any, ends: Sequence[End], size: float = SIZE, lead: float = L
         return
     transform, scale = ax.transData, ax.figure.dpi / POINTS
     tips = np.array([transform.transform((end.x, end.y)) for end in ends])
-    places = spread(tips[:, 1], 1.15 * size * scale)
+    heights = np.round(
+        tips[:, 1], 2
+    )  # of ends that are one but for rounding the first named is lowest
+    places = spread(heights, 1.15 * size * scale)
     right = tips[:, 0].max() + lead * scale
     for end, tip, place in zip(ends, tips, places, strict=True):
         offset = ((right - tip[0]) / scale, (place - tip[1]) / scale)
-        leader = {"arrowstyle": "-", "lw": 0.5, "color": end.color, "shrinkA": 1, "shrinkB": 1}
+        leader = {"arrowstyle": "-", "lw": LEADER, "ls": end.dash, "color": end.color}
+        leader |= {"shrinkA": 1, "shrinkB": 1}
         ax.annotate(
             end.text,
             (end.x, end.y),
