@@ -75,7 +75,7 @@ def label_cells(ax: Any, texts: pd.DataFrame, dark: pd.DataFrame) -> None:
 def scheme_rows(ax: Any, names: Sequence[str], *, shown: bool = True) -> None:
     """A row of height 1 a name, the first on top."""
     ax.set_yticks(range(len(names)), list(names) if shown else [])
-    ax.set_ylim(len(names) - 0.5, -0.5)
+    ax.set_ylim(max(len(names), 1) - 0.5, -0.5)
 
 
 def _label(ax: Any, frame: pd.DataFrame, names_shown: bool) -> None:

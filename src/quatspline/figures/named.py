@@ -28,9 +28,6 @@ def said(chosen: Sequence[str] = NAMED) -> str:
 
 SAID = said()
 
-ROOM = 0.86
-"""Of the width, for axes whose curves are named at the right."""
-
 
 def looks(name: str, chosen: Collection[str] = NAMED) -> dict[str, Any]:
     """The style of a scheme among many, of which those chosen are in colour."""
@@ -54,8 +51,11 @@ def draw_curves(ax: Any, curves: Iterable[tuple[str, pd.Series, pd.Series]]) -> 
 
 
 def name_ends(fig: Any, panels: Mapping[Any, Mapping[str, End]]) -> None:
-    """Write names right of the curves of some axes, after all else is laid out."""
+    """Write names right of the curves of some axes, after all else is laid out with the room that they take."""
+    held = [text for ax, ends in panels.items() for text in direct.hold_room(ax, ends.values())]
     fig.draw_without_rendering()
     fig.set_layout_engine("none")
+    for text in held:
+        text.remove()
     for ax, ends in panels.items():
         direct.label_ends(ax, list(ends.values()))
