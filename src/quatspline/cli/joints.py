@@ -45,7 +45,7 @@ JOINTS_NOTE = (
 )
 SPANS = (
     "Angles at the frames left out: dots are the median over the joints of their root mean squares, bars reach to the "
-    "worst joint, strokes are the largest angle of all.\n"
+    "worst joint, strokes are the largest angle of all; hollow dots are third-party schemes.\n"
 )
 BY_JOINT = (
     "Root mean square angle of every joint at the frames left out, by slerp and the best schemes.\n"

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from quatspline.catalogue import called
 from quatspline.figures import style
 from quatspline.figures.heat import ROW, scheme_rows
 
@@ -24,12 +25,13 @@ def spans(table: pd.DataFrame) -> Figure:
         median, worst, largest = np.degrees(
             [row[k] for k in ("rms_median", "rms_worst", "largest")]
         )
-        color = style.scheme_style(str(row["scheme"]))["color"]
+        look = style.scheme_style(str(row["scheme"]))
+        color, face = look["color"], look.get("markerfacecolor", look["color"])
         ax.plot([median, worst], [height, height], color=color, lw=2.0, solid_capstyle="butt")
-        ax.plot(median, height, "o", color=color, ms=4.0)
+        ax.plot(median, height, "o", color=color, mfc=face, ms=4.0)
         ax.plot(largest, height, "|", color=color, ms=6.0)
     ax.set(xscale="log", xlabel="degrees at frames left out")
-    scheme_rows(ax, [str(name) for name in rows["scheme"]])
+    scheme_rows(ax, [called(str(name)) for name in rows["scheme"]])
     return fig
 
 
@@ -43,7 +45,7 @@ def by_joint(joints: pd.DataFrame, schemes: Sequence[str]) -> Figure:
     for name in schemes:
         own = rows[rows["scheme"] == name]
         looks = style.scheme_style(name) | {"linestyle": "", "markersize": 4.0}
-        ax.plot(np.degrees(own["rms"]), own["joint"].map(places), label=name, **looks)
+        ax.plot(np.degrees(own["rms"]), own["joint"].map(places), label=called(name), **looks)
     ax.set(xscale="log", xlabel="rms angle (degrees) at frames left out")
     scheme_rows(ax, list(places))
     style.legend_of(fig, ax, 2)
