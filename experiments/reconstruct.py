@@ -144,7 +144,7 @@ def draw(table: pd.DataFrame) -> Figure:
         }
         log_heat(ax, shown, "rms angle over slerp's", (1 / SPAN, SPAN), **looks)
         label_cells(ax, shown.map(_text), shown.gt(DARK) | shown.lt(1 / DARK))
-        ax.set(title=_title(name, each), xlabel="every ... frame kept")
+        ax.set(title=_title(name, each), xlabel="one frame kept of")
     style.letters(axes[0])
     return fig
 
@@ -194,5 +194,5 @@ def caption(table: pd.DataFrame) -> str:
     return (
         f"Rms angle of joints at the frames left out when every 2nd, 4th, ... frame is kept, over slerp's, geometric "
         f"mean ({_count(clips)}): below 1 (blue) is better than slerp. Recordings as they are, low-pass filtered, "
-        f"and two controls, motion without noise and noise without motion.{made}"
+        f"and two controls, motion without noise and noise without motion; grey: too slow, or refused.{made}"
     )
