@@ -119,7 +119,6 @@ NONE = 0.2
 
 def draw(table: pd.DataFrame) -> Figure:
     fig, axes = style.axes(style.PAGE, 2.9, 1, 3)
-    fig.get_layout_engine().set(rect=(0.0, 0.0, named.ROOM, 1.0))
     known, recorded = table[table["clip"] == TUMBLE], table[table["clip"] == ALL]
     panels = (
         (known, "rms_degrees", f"{TUMBLE}, {{n}} keyframes", "rms angle (deg)"),
@@ -177,8 +176,7 @@ def _look(name: str) -> dict[str, Any]:
 
 def _key() -> list[Line2D]:
     return [
-        Line2D([], [], label=f"{OURS}, weight {way}", **_look(name))
-        for name, (_, way) in MARKS.items()
+        Line2D([], [], label=f"{OURS} {way}", **_look(name)) for name, (_, way) in MARKS.items()
     ]
 
 

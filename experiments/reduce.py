@@ -90,7 +90,6 @@ def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
 def draw(table: pd.DataFrame) -> Figure:
     filters = [each for each in CUTOFFS if (table["filter"] == each).any()]
     fig, panels = style.axes(style.PAGE, 3.0, 1, 2 * len(filters))
-    fig.get_layout_engine().set(rect=(0.0, 0.0, named.ROOM, 1.0))
     panels[0, len(filters) - 1].sharey(panels[0, 0])
     panels[0, -1].sharey(panels[0, len(filters)])
     for k, each in enumerate(filters):

@@ -95,7 +95,6 @@ def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     fig, panels = style.axes(style.PAGE, 2.8, 1, 3)
-    fig.get_layout_engine().set(wspace=0.12)
     ends = {}
     for ax, name, setting in (
         (panels[0, 0], "fast-slerp", "terms"),

@@ -71,9 +71,7 @@ def label_ends(ax: Any, ends: Sequence[End], size: float = SIZE, lead: float = L
         return
     transform, scale = ax.transData, ax.figure.dpi / POINTS
     tips = np.array([transform.transform((end.x, end.y)) for end in ends])
-    heights = np.round(
-        tips[:, 1], 2
-    )  # of ends that are one but for rounding the first named is lowest
+    heights = np.round(tips[:, 1], 2)  # where ends differ by rounding alone the first is lowest
     places = spread(heights, 1.15 * size * scale)
     right = tips[:, 0].max() + lead * scale
     for end, tip, place in zip(ends, tips, places, strict=True):
