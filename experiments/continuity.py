@@ -112,7 +112,7 @@ def draw(table: pd.DataFrame) -> Figure:
         ax.set_title(case.replace(" degrees", "°"))
     ax = panels[0, -1]
     scheme_rows.mark(ax, plain.groupby("scheme")["least_key_speed"].first(), names)
-    ax.set(title="least speed", xlabel="at keyframes, over mean", xlim=(-0.08, 1.08))
+    ax.set(title="least key speed", xlabel="over the mean", xlim=(-0.08, 1.08))
     scheme_rows.label(panels[0, 0], names, sharing, chosen=None)
     _continuity_of(ax, measured)
     style.letters(panels[0])

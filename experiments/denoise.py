@@ -188,6 +188,5 @@ def caption(table: pd.DataFrame) -> str:
         "and (b) of angular velocity on a known motion, (c) of orientation on recordings as multiples of slerp's, "
         f"geometric mean over joints ({len(clips)} clip{'' if len(clips) == 1 else 's'}). Left of the dashed line "
         "nothing is added. Interpolants pass the noise on; the smoothing spline chooses how near to keep to its "
-        "keyframes, by default (curve), by cross-validation (x) or told the noise (+), which lie on one curve where "
-        f"there is enough noise to estimate.{made}"
+        f"keyframes, by default (curve), by cross-validation (x) or told the noise (+).{made}"
     )
