@@ -76,11 +76,16 @@ def test_curves_that_are_one_are_said_to_be(
     lines = told(*rows)
     assert ("of all measured" in lines[0]) == (energies["torque"] > 0.0)
     assert lines[1] == (
-        "3 of the 4 schemes measured are alike here (in torque, length and peak acceleration, to six digits): "
+        "quartic, a and b are alike here (in torque, length and peak acceleration, to six digits): "
         f"{reason}. Any of them will do."
     )
     assert not any("quartic has" in line for line in lines)
     assert lines[2:] == ["Not measured: d (no)."]
+
+
+def test_of_many_that_are_alike_the_number_is_told() -> None:
+    lines = told(*(row(name, length=1.0) for name in "abcde"), row("f", torque=2.0))
+    assert lines[1].startswith("5 of the 6 schemes measured are alike here (")
 
 
 def test_curves_of_one_torque_that_take_another_way_are_not_alike() -> None:

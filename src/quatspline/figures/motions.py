@@ -127,7 +127,7 @@ Box = tuple[float, float, float, float]
 def _boxes(name: str) -> list[Box]:
     """Left, bottom, width, height of the panels in shares of the figure."""
     if name == "key":
-        return [*((0.0, 0.83 - 0.175 * k, 1.0, 0.145) for k in range(3)), (0.2, 0.0, 0.6, 0.44)]
+        return [*((0.0, 0.82 - 0.175 * k, 1.0, 0.145) for k in range(3)), (0.2, 0.0, 0.6, 0.44)]
     return [(x, y, 0.48, 0.45) for y in (0.5, 0.0) for x in (0.01, 0.51)]
 
 

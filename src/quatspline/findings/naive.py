@@ -41,11 +41,11 @@ def time(cell: Ledger) -> tuple[Part, ...]:
     )
 
 
-def headline(cell: Ledger) -> tuple[Part, ...]:
-    """Both, in plain words."""
+def clause(cell: Ledger) -> tuple[Part, ...]:
+    """Both, in plain words, of a sentence on the least torque."""
     return said(
-        f"**What naive costs.** `{NAIVE}` has {{naive:.3f}} times the least torque, at steps of {{where}} "
-        "{large:.3g}; scipy's `RotationSpline` {careful:.3f} and {careful_large:.3g}, at {sample:.0f} times the time.",
+        f"naive `{NAIVE}` {{naive:.3f}} (steps of {{where}}: {{large:.3g}}), scipy's `RotationSpline` {{careful:.3f}} "
+        "({careful_large:.3g}) at {sample:.0f} times the naive one's time",
         naive=_torque(cell, NAIVE),
         where=cell("fairness", "data", scheme=NAIVE, data=LARGE),
         large=_torque(cell, NAIVE, LARGE),

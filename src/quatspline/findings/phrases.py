@@ -100,6 +100,12 @@ def _why_alike(table: Table) -> tuple[Part, ...]:
     return (f"the keyframes {turns if table.taken['length'] > MET else 'do not move'}",)
 
 
+def _called(table: Table) -> tuple[Part, ...]:
+    """The schemes of all rows in a sentence, ours marked."""
+    names = [called(row["scheme"]) for row in records(table.rows)]
+    return (" and ".join(filter(None, [", ".join(names[:-1]), names[-1]])),)
+
+
 def _schemes(table: Table) -> tuple[Part, ...]:
     quotes = [Quote((table.cell("scheme", row),)) for row in records(table.rows)]
     return tuple(part for quote in quotes for part in (", ", quote))[1:]
@@ -120,5 +126,6 @@ PHRASES: dict[str, Words] = {
     "at torque": _at_torque,
     "over both": _over_both,
     "schemes": _schemes,
+    "called": _called,
     "reason": lambda table: (Quote((table.cell("failure"), table.cell("scheme")), "reason"),),
 }

@@ -122,6 +122,10 @@ def shown(frame: pd.DataFrame, needs: Needs = NOTHING) -> list[str]:
     return list(dict.fromkeys([*first, *(n for n in FAMILIAR if n in every), *every]))
 
 
+FEW = 4
+"""Schemes that are named where they are alike; of more, only their number is told."""
+ALIKE = "are alike here (in torque, length and peak acceleration, to six digits)"
+
 # -- questions ----------------------------------------------------------------------------------
 
 TAKE = (
@@ -144,9 +148,13 @@ def _beside(needs: Needs) -> tuple[Question, ...]:
     pool = candidates.candidates(needs)
     return (
         Question(
-            "{count} of the {count of all} schemes measured are alike here (in torque, length and peak acceleration, "
-            "to six digits): {why}. Any of them will do.",
-            (alike, lambda rows, _: len(rows) > 1),
+            f"{{called}} {ALIKE}: {{why}}. Any of them will do.",
+            (alike, lambda rows, _: 1 < len(rows) <= FEW),
+            rank,
+        ),
+        Question(
+            f"{{count}} of the {{count of all}} schemes measured {ALIKE}: {{why}}. Any of them will do.",
+            (alike, lambda rows, _: len(rows) > FEW),
         ),
         Question(
             "It turns {length:rounded} rad where the keyframes need {keyframes_length:rounded}.",
