@@ -111,7 +111,7 @@ def draw(table: pd.DataFrame) -> Figure:
         _jumps_of(ax, table[table["case"] == case], names)
         ax.set_title(case.replace(" degrees", "°"))
     ax = panels[0, -1]
-    scheme_rows.mark(ax, plain.groupby("scheme")["least_key_speed"].first(), names)
+    scheme_rows.mark(ax, plain.groupby("scheme")["least_key_speed"].first(), names, None)
     ax.set(title="least key speed", xlabel="over the mean", xlim=(-0.08, 1.08))
     scheme_rows.label(panels[0, 0], names, sharing, chosen=None)
     _continuity_of(ax, measured)

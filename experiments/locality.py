@@ -92,7 +92,7 @@ def draw(table: pd.DataFrame) -> Figure:
     panels[0, 0].set(title="reach", xlabel="segment, from the keyframe")
     rows.label(panels[0, 0], names, sharing, chosen=None)
     ax = panels[0, 1]
-    rows.mark(ax, summary["amplification"], names)
+    rows.mark(ax, summary["amplification"], names, None)
     ax.axvline(1.0, color="#888888", lw=0.6, zorder=1)
     ax.set(title="amplification", xlabel="largest movement", xlim=(0.0, None))
     scheme_rows(ax, names, shown=False)

@@ -79,3 +79,9 @@ def test_marks_are_hollow_for_libraries_and_grey_unless_chosen() -> None:
     for name, line in zip(names, ax.lines, strict=True):
         assert (line.get_markerfacecolor() == "white") == third_party(name)
         assert (line.get_color() == rows.looks("hermite")["color"]) == (name not in NAMED)
+
+
+def test_marks_are_black_where_colours_stand_for_something_else() -> None:
+    names = ["slerp", "hermite", "scipy-rotation-spline"]
+    assert {rows.look(name, None)["color"] for name in names} == {"black"}
+    assert [rows.look(name, None).get("markerfacecolor") for name in names] == [None, None, "white"]

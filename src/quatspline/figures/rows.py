@@ -90,16 +90,24 @@ def label(
         text.set_color("black" if chosen is None or name in chosen else BEHIND)
 
 
-def mark(ax: Any, x: pd.Series, names: Sequence[str], chosen: Collection[str] = NAMED) -> None:
-    """A mark per row at numbers by name: those chosen in their colours, all others grey, libraries hollow."""
+def mark(
+    ax: Any, x: pd.Series, names: Sequence[str], chosen: Collection[str] | None = NAMED
+) -> None:
+    """A mark per row at numbers by name, as `look` has it."""
     for height, name in enumerate(names):
         ax.plot(x.get(name, np.nan), height, **look(name, chosen))
 
 
-def look(name: str, chosen: Collection[str] = NAMED) -> dict[str, Any]:
-    """A scheme's mark, which the edge of an axes does not cut."""
-    shape = {} if name in chosen else {"marker": "o"}
-    return looks(name, chosen) | shape | {"linestyle": "", "ms": 4.2, "clip_on": False}
+def look(name: str, chosen: Collection[str] | None = NAMED) -> dict[str, Any]:
+    """A scheme's mark, which the edge of an axes does not cut; hollow for libraries.
+
+    Those chosen are in their colours and all others grey; all are black where none are chosen, since colours stand
+    for something else.
+    """
+    own = looks(name, chosen or ())
+    own |= {} if chosen and name in chosen else {"marker": "o"}
+    own |= {"color": "black"} if chosen is None else {}
+    return own | {"linestyle": "", "ms": 4.2, "clip_on": False}
 
 
 def said(sharing: Shared) -> str:
