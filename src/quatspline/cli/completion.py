@@ -11,9 +11,6 @@ import os
 from itertools import chain
 from typing import Any
 
-from quatspline import catalogue
-from quatspline.cli.words import names
-
 ASKED = "_ARGCOMPLETE"
 """The variable that a shell sets that asks what may follow."""
 
@@ -28,13 +25,15 @@ def offered(parser: argparse.ArgumentParser) -> None:
 
 def schemes(**asked: Any) -> list[str]:
     """Names of schemes, none of which is imported."""
+    from quatspline import catalogue  # no command should wait for it
+
     return catalogue.names()
 
 
 def listed_schemes(prefix: str, **asked: Any) -> list[str]:
     """Names of schemes behind those that a list already has, as in ``slerp,squad``."""
     before, comma, _ = prefix.rpartition(",")
-    return [f"{before}{comma}{name}" for name in catalogue.names()]
+    return [f"{before}{comma}{name}" for name in schemes()]
 
 
 def experiments(**asked: Any) -> list[str]:
@@ -46,6 +45,8 @@ def experiments(**asked: Any) -> list[str]:
 
 def options(parsed_args: argparse.Namespace, **asked: Any) -> list[str]:
     """Options of the schemes that the line names, with the "=" that their values follow."""
+    from quatspline import catalogue
+    from quatspline.cli.words import names
     from quatspline.options import declared_by
 
     groups = getattr(parsed_args, "schemes", None) or []
