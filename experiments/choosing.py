@@ -234,11 +234,13 @@ def draw(table: pd.DataFrame) -> Figure:
     shown = table[np.isfinite(table["torque"]) & table["nanoseconds_per_sample"].notna()]
     shown = shown.assign(excess=(shown["torque"] - 1.0).clip(lower=LEAST_EXCESS))
     points = [_drawn(ax, row) for _, row in shown.iterrows()]
-    ax.set(xscale="log", yscale="log", xlabel="nanoseconds per sample")
+    ax.set(xscale="log", yscale="log", xlabel="nanoseconds per sample", xmargin=0.1)
     ax.set_ylabel("median excess of torque energy over the minimum")
     fig.draw_without_rendering()
     fig.set_layout_engine("none")
-    direct.label_points(ax, [point for point in points if point is not None])
+    marks = zip(shown["nanoseconds_per_sample"], shown["excess"], points, strict=True)
+    unnamed = [(x, y) for x, y, point in marks if point is None]
+    direct.label_points(ax, [point for point in points if point is not None], unnamed)
     return fig
 
 

@@ -210,12 +210,13 @@ COLUMNS = 4
 
 
 class Block(NamedTuple):
-    """Panels of schemes and methods that show one share, in colours of its own."""
+    """Panels of schemes and methods that show one share, in colours of its own, and what is written on it."""
 
     groups: list[Any]
     share: str
     colours: str
     label: str
+    written: str
 
     @property
     def rows(self) -> int:
@@ -228,17 +229,27 @@ def draw(table: pd.DataFrame) -> Figure:
     shown = table[table["keyframes"] == count].fillna({"method": ""})
     shown = shown.assign(share_smooth=1.0 - shown["share_jumping"])
     told = shown.groupby("scheme")["share_converged"].transform("count") > 0
+    solving, silent = _groups(shown[told]), _groups(shown[~told])
     blocks = [
-        Block(_groups(shown[told]), "share_converged", "viridis", "share of sets solved"),
-        Block(_groups(shown[~told]), "share_smooth", "cividis", "share of sets without a jump"),
+        Block(
+            solving, "share_converged", "viridis", "share of sets solved", "median of iterations"
+        ),
+        Block(
+            *(silent, "share_smooth", "cividis", "share of sets without a jump"),
+            "worst jump of acceleration over the peak",
+        ),
     ]
     blocks = [block for block in blocks if block.groups]
     heights = [block.rows for block in blocks]
-    size = style.PAGE, 1.75 * sum(heights) + 0.6 * len(heights)
+    size = style.PAGE, 1.6 * sum(heights) + 0.8 * len(heights)
     fig = Figure(figsize=size, layout="constrained")
-    parts: Any = fig.subfigures(len(blocks), 1, height_ratios=heights, squeeze=False)
-    for part, block in zip(parts[:, 0], blocks, strict=True):
+    parts: Any = fig.subfigures(
+        len(blocks), 1, height_ratios=[h + 0.4 for h in heights], squeeze=False
+    )
+    for letter, part, block in zip("ab", parts[:, 0], blocks, strict=False):
         _block(part, block)
+        title = f"({letter}) colour: {block.label}; number: {block.written}"
+        part.suptitle(title, x=0.01, ha="left", fontsize=9)
     return fig
 
 
@@ -255,12 +266,14 @@ def _block(fig: Any, block: Block) -> None:
     for ax, ((name, method), group) in zip(panels.flat, groups, strict=False):
         image = _heat(ax, group, block.share, block.colours)
         ax.set_title(f"{name}\n{method}" if method else name, fontsize=8)
-    for ax in panels[:, 0]:
-        ax.set_ylabel("step angle (degrees)")
     for ax in panels.flat[max(len(groups) - COLUMNS, 0) : len(groups)]:  # the lowest that are drawn
         ax.tick_params(labelbottom=True)
+    used = panels[:, : min(len(groups), COLUMNS)]
+    for ax in used[-1]:
         ax.set_xlabel("unevenness")
-    fig.colorbar(image, ax=panels, label=block.label, shrink=0.9, aspect=14 * rows)
+    for ax in used[:, 0]:
+        ax.set_ylabel("step angle (degrees)")
+    fig.colorbar(image, ax=used, label=block.label, shrink=0.9, aspect=14 * rows)
 
 
 def _heat(ax: Any, group: pd.DataFrame, share: str, colours: str) -> Any:

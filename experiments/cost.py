@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullLocator
 
 from quatspline import catalogue
 from quatspline.curve import Curve
@@ -149,7 +150,6 @@ def _counts(task: str, name: str) -> dict[str, float]:
 
 def draw(table: pd.DataFrame) -> Figure:
     fig, panels = style.axes(style.PAGE, 3.6, 1, 2)
-    fig.get_layout_engine().set(rect=(0.0, 0.0, named.ROOM, 1.0), wspace=0.34)
     measured = table[table["seconds_median"].notna()].sort_values("size")
     ends = {}
     for ax, task, unit in zip(panels[0], SIZES, ("keyframe", "sample"), strict=False):
@@ -161,6 +161,8 @@ def draw(table: pd.DataFrame) -> Figure:
         ends[ax] = named.draw_curves(ax, rows)
         ax.set(xscale="log", yscale="log", title=task)
         ax.set(xlabel=f"{unit}s", ylabel=f"seconds per {unit}")
+        ax.xaxis.set_major_locator(LogLocator(numticks=len(EVALUATION) + 2))
+        ax.xaxis.set_minor_locator(NullLocator())
     style.letters(panels[0])
     named.name_ends(fig, ends)
     return fig

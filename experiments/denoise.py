@@ -6,8 +6,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
-from quatspline.figures import style
+from quatspline.catalogue import called
+from quatspline.figures import direct, named, style
 from quatspline.instruments.denoising import KNOWN, denoising, disturbed
 from quatspline.instruments.reconstruction import truth
 from quatspline.instruments.summary import ALL, compared
@@ -109,14 +111,10 @@ def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
 
 # -- the figure ---------------------------------------------------------------------------------
 
-PURPLE = "#5d3a9b"
-LOOKS: dict[str, dict[str, Any]] = {
-    OURS: {"color": PURPLE, "marker": "P"},
-    f"{OURS}, gcv": {"color": PURPLE, "marker": "", "linestyle": "--"},
-    f"{OURS}, told": {"color": PURPLE, "marker": "", "linestyle": ":"},
-}
-FLOOR = 0.01
-"""No noise is drawn at this (degrees)."""
+MARKS = {f"{OURS}, gcv": ("x", "by cross-validation"), f"{OURS}, told": ("+", "told the noise")}
+"""Of other ways to choose the weight, without lines: they lie on the curve of the scheme, or show beside it."""
+NONE = 0.2
+"""Where no noise is drawn, over the least noise: apart from a curve that would need a logarithm of 0."""
 
 
 def draw(table: pd.DataFrame) -> Figure:
@@ -125,36 +123,61 @@ def draw(table: pd.DataFrame) -> Figure:
     panels = (
         (known, "rms_degrees", f"{TUMBLE}, {{n}} keyframes", "rms angle (deg)"),
         (known, "omega", f"{TUMBLE}, {{n}} keyframes", "rms velocity error (deg/s)"),
-        (recorded, "over_slerp", "all clips, one frame in {every} kept", "rms angle over slerp's"),
+        (recorded, "over_slerp", "clips, 1 frame in {every} kept", "rms angle over slerp's"),
     )
     for ax, (rows, column, title, label) in zip(axes[0], panels, strict=True):
         dense = rows[rows["every"] == rows["every"].min()] if len(rows) else rows
-        _lines(ax, dense, column)
+        ends = _lines(ax, dense, column)
         counts = dense["keyframes"].dropna()
         facts = {"n": int(counts.max()) if len(counts) else 0, "every": dense["every"].min()}
         ax.set(title=title.format(**facts), xlabel="noise about each axis (deg)", ylabel=label)
-        ax.set_xscale("symlog", linthresh=FLOOR)
-        ax.set_xlim(left=0.0)
+        _noises(ax, sorted(table["noise_degrees"].unique()))
     for ax in axes[0, :2]:
         ax.set_yscale("log")
     axes[0, 2].axhline(1.0, color="#8a8a8a", linewidth=0.6)
     style.letters(axes[0])
-    style.legend_of(fig, axes[0, 0], 4)
+    fig.legend(handles=_key(), loc="outside lower center", ncols=2)
+    named.name_ends(fig, {axes[0, 2]: ends})
     return fig
 
 
-def _lines(ax: Any, rows: pd.DataFrame, column: str) -> None:
+def _noises(ax: Any, sigmas: list[float]) -> None:
+    """A logarithmic axis, with a place for no noise left of a line."""
+    ax.set_xscale("log")
+    least = min(sigma for sigma in sigmas if sigma > 0.0)
+    shown = [sigma for sigma in sigmas if sigma > 0.0]
+    ax.set_xticks([NONE * least, *shown], ["0", *(f"{sigma:g}" for sigma in shown)])
+    ax.minorticks_off()
+    ax.axvline(np.sqrt(NONE) * least, color="#8a8a8a", lw=0.6, ls=(0, (2, 2)))
+
+
+def _lines(ax: Any, rows: pd.DataFrame, column: str) -> dict[str, direct.End]:
+    """Draw a curve per scheme, without noise a mark apart from it; where curves end."""
+    ends = {}
+    least = rows.loc[rows["noise_degrees"] > 0.0, "noise_degrees"].min()
     for name in dict.fromkeys(rows["scheme"]):
         own = rows[(rows["scheme"] == name) & rows[column].notna()].sort_values("noise_degrees")
-        ax.plot(own["noise_degrees"], own[column], label=name, **_look(name))
+        still, noisy = own[own["noise_degrees"] == 0.0], own[own["noise_degrees"] > 0.0]
+        look = _look(name)
+        ax.plot(noisy["noise_degrees"], noisy[column], **look)
+        ax.plot([NONE * least] * len(still), still[column], **look)
+        if len(noisy) and name not in MARKS:
+            tip = (noisy["noise_degrees"].iloc[-1], noisy[column].iloc[-1])
+            ends[name] = direct.End(*tip, called(name), look["color"], look["linestyle"])
+    return ends
 
 
 def _look(name: str) -> dict[str, Any]:
-    return {
-        "markerfacecolor": "none",
-        "linestyle": "-",
-        **LOOKS.get(name, style.scheme_style(name)),
-    }
+    look = style.scheme_style(name.split(",")[0])
+    if name not in MARKS:
+        return look
+    return {"color": look["color"], "marker": MARKS[name][0], "linestyle": "", "ms": 6.0}
+
+
+def _key() -> list[Line2D]:
+    return [
+        Line2D([], [], label=f"{OURS} {way}", **_look(name)) for name, (_, way) in MARKS.items()
+    ]
 
 
 def caption(table: pd.DataFrame) -> str:
@@ -163,7 +186,7 @@ def caption(table: pd.DataFrame) -> str:
     return (
         "Errors to the truth at frames left out against the white noise added to the keyframes: (a) of orientation "
         "and (b) of angular velocity on a known motion, (c) of orientation on recordings as multiples of slerp's, "
-        f"geometric mean over joints ({len(clips)} clips). Interpolants pass the noise on; the smoothing spline "
-        "chooses by itself, by cross-validation (dashed) or for the noise as it is (dotted) how near to keep to its "
-        f"keyframes.{made}"
+        f"geometric mean over joints ({len(clips)} clip{'' if len(clips) == 1 else 's'}). Left of the dashed line "
+        "nothing is added. Interpolants pass the noise on; the smoothing spline chooses how near to keep to its "
+        f"keyframes, by default (curve), by cross-validation (x) or told the noise (+).{made}"
     )

@@ -9,8 +9,10 @@ from matplotlib.figure import Figure
 
 from quatspline.catalogue import version
 from quatspline.curve import Curve
+from quatspline.figures import rows as scheme_rows
 from quatspline.figures import style
-from quatspline.figures.heat import ROW, log_heat, scheme_rows
+from quatspline.figures.heat import ROW, log_heat
+from quatspline.figures.named import SAID
 from quatspline.instruments.continuity import jumps, measured_continuity
 from quatspline.instruments.curvature import Bending, curvature_energy
 from quatspline.instruments.fairness import fairness
@@ -163,40 +165,57 @@ def _quantile(values: pd.Series, level: float) -> float:
     return float(above if np.isinf(above) else below + share * (above - below))
 
 
+LEAST = 1e-6
+"""Excesses below are drawn there."""
+EXCESS = "torque energy over the least, minus 1"
+
+
 def draw(table: pd.DataFrame) -> Figure:
-    finite = table[np.isfinite(table["median"])]
-    committed = finite[finite["data"] == COMMITTED].set_index("scheme")["median"].sort_values()
-    names = [*committed.index, *sorted(set(finite["scheme"]) - set(committed.index))]
+    finite, sharing = table[np.isfinite(table["median"])], _sharing(table)
+    own = finite[finite["scheme"].isin(list(sharing))]
+    committed = own[own["data"] == COMMITTED].set_index("scheme")["median"].sort_values()
+    names = [*committed.index, *sorted(set(own["scheme"]) - set(committed.index))]
     fig, panels = style.axes(
         style.PAGE, ROW * len(names) + 1.2, 1, 2, gridspec_kw={"width_ratios": (1, 1.35)}
     )
     _excess(panels[0, 0], finite[finite["data"] == COMMITTED], names)
-    steps = finite[finite["data"] != COMMITTED]
-    steps = steps.assign(angle=steps["data"].str.split().str[0].astype(int))
-    shown = (steps.pivot(index="scheme", columns="angle", values="median") - 1.0).reindex(names)
-    label = "median torque energy over the minimum, minus 1"
-    log_heat(panels[0, 1], shown.clip(lower=LIMITS[0]), label, LIMITS, names_shown=False)
+    scheme_rows.label(panels[0, 0], names, sharing)
+    shown = _by_angle(finite).reindex(names)
+    log_heat(panels[0, 1], shown, f"median {EXCESS}", LIMITS, names_shown=False)
     panels[0, 1].set(title="by step angle", xlabel="step angle (degrees)")
     style.letters(panels[0])
     return fig
 
 
+def _by_angle(finite: pd.DataFrame) -> pd.DataFrame:
+    steps = finite[finite["data"] != COMMITTED]
+    steps = steps.assign(angle=steps["data"].str.split().str[0].astype(int))
+    excess = steps.pivot(index="scheme", columns="angle", values="median") - 1.0
+    return excess.clip(lower=LIMITS[0])
+
+
+def _sharing(table: pd.DataFrame) -> dict[str, list[str]]:
+    finite = table[np.isfinite(table["median"])]
+    committed = finite[finite["data"] == COMMITTED].set_index("scheme")
+    excess = (committed[["least", "median", "worst"]] - 1.0).clip(lower=LEAST)
+    drawn = excess.join(_by_angle(finite).clip(*LIMITS), how="outer").transform(np.log10)
+    return scheme_rows.shared(drawn)
+
+
 def _excess(ax: Any, rows: pd.DataFrame, names: list[str]) -> None:
     """Median and range of the excess on the committed sets, in the order of the names."""
     rows = rows.set_index("scheme").reindex(names)
-    y = np.arange(len(names))
-    excess = {key: (rows[key] - 1.0).clip(lower=1e-6) for key in ("least", "median", "worst")}
-    ax.hlines(y, excess["least"], excess["worst"], color="#bbbbbb", lw=2)
-    for x, height, name in zip(excess["median"], y, names, strict=True):
-        ax.plot(x, height, **style.scheme_style(name) | {"linestyle": ""}, ms=4.5)
-    ax.set(xscale="log", xlabel="excess of torque energy", title="committed sets")
-    scheme_rows(ax, names)
+    excess = {key: (rows[key] - 1.0).clip(lower=LEAST) for key in ("least", "median", "worst")}
+    ax.hlines(np.arange(len(names)), excess["least"], excess["worst"], color="#bbbbbb", lw=2)
+    scheme_rows.mark(ax, excess["median"], names)
+    ax.set(xscale="log", xlabel=EXCESS, title="committed sets")
 
 
 def caption(table: pd.DataFrame) -> str:
     sets = int(table.loc[table["data"] == COMMITTED, "sets"].max())
     return (
-        f"(a) Excess of the torque energy over the minimum on {sets} committed keyframe sets: median (marker), range "
-        "(bar); below 1e-6 drawn there; lower is fairer. (b) Its median on sets of one step angle; grey: the "
-        "scheme does not apply, or its energy is infinite. Schemes whose velocity jumps everywhere are left out."
+        f"(a) Excess of the torque energy over the least on {sets} committed keyframe sets: median (mark), range "
+        f"(bar); below {LEAST:g} drawn there; lower is fairer. (b) Its median on sets of one step angle; grey: the "
+        "scheme does not apply, or its energy is infinite. Schemes whose velocity jumps everywhere are left out. "
+        f"{SAID} {scheme_rows.said(_sharing(table))}"
     )

@@ -32,6 +32,8 @@ FORMATS = {
 ENDS = ("closed", "given", "complete", "not-a-knot", "natural")
 TITLES = {"closed": "closed", "complete": "complete ends", "natural": "natural ends"}
 TICKS = (0.02, 0.05, 0.1, 0.2, 0.5)
+LEAST = 1e-16
+"""Of the axis: below rounding."""
 COUNTS = (12, 24, 48, 96, 192, 384)
 
 
@@ -56,21 +58,23 @@ def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    fig, panels = style.axes(style.PAGE, 3.4, 1, 3, sharey=True)
-    for ax, ends in zip(panels[0], ("closed", "complete", "natural"), strict=True):
-        for degree, color in zip(DEGREES, style.PALETTE, strict=False):
+    fig, panels = style.axes(style.PAGE, 3.2, 1, 3, sharey=True)
+    for ax, ends in zip(panels[0], TITLES, strict=True):
+        for degree, color, marker in zip(DEGREES, style.PALETTE, style.MARKERS, strict=False):
             rows = table[(table["degree"] == degree) & (table["ends"] == ends)]
-            ax.plot(rows["spacing"], rows["angle"], "o-", c=color, ms=3, label=f"degree {degree}")
+            look = {"c": color, "marker": marker, "label": f"degree {degree}"}
+            ax.plot(rows["spacing"], rows["angle"], **look)
             if ends == "closed":
-                bound = rows["expected"] * rows["spacing"] ** (degree + 1)
-                ax.plot(rows["spacing"], bound, ":", c=color, lw=0.8)
-        ax.set(xscale="log", yscale="log", title=TITLES[ends], xlabel="keyframe spacing (t)")
+                flat = rows["expected"] * rows["spacing"] ** (degree + 1)
+                ax.plot(rows["spacing"], flat, ":", c=color, lw=0.8)
+        ax.set(xscale="log", yscale="log", title=TITLES[ends])
+        ax.set(xlabel="keyframe spacing (unit of time)", ylim=(LEAST, 20.0))
         ax.set_xticks(TICKS, [f"{tick:g}" for tick in TICKS])
         ax.minorticks_off()
-        ax.set_ylim(1e-16, 5.0)
     panels[0, 0].set_ylabel("largest error (rad)")
+    panels[0, 0].plot([], [], ":", c="#555555", lw=0.8, label="flat spline")
     style.letters(panels[0])
-    style.legend_of(fig, panels[0, 0], 4)
+    style.legend_of(fig, panels[0, 0], 5)
     return fig
 
 

@@ -7,8 +7,9 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from quatspline.figures import style
-from quatspline.figures.heat import ROW, scheme_rows
+from quatspline.figures import rows, style
+from quatspline.figures.heat import ROW, SMALL
+from quatspline.figures.looks import third_party
 from quatspline.instruments.noise import noise
 from quatspline.instruments.trials import Row, attempted, builder, facts
 from quatspline.runs.experiment import Run, crossed
@@ -27,7 +28,14 @@ NOTE = (
 FORMATS = dict.fromkeys(("gain", "gain_omega", "gain_alpha"), ".3f")
 COUNT = 9
 GAINS = {"gain": "orientation", "gain_omega": "velocity", "gain_alpha": "acceleration"}
-LOOKS = {"keyframes": ("o", style.BLUE), "times": ("s", style.RED)}
+LOOKS = {"keyframes": ("o", style.BLUE, 4.4), "times": ("s", style.RED, 3.2)}
+"""Mark, colour and size in points: one shows behind the other."""
+ANGLE = 60
+"""Of the steps in the figure."""
+ENDS = {"gain": 1.5, "gain_omega": 5.0, "gain_alpha": 50.0}
+"""Of the axes: gains beyond are written there."""
+WIDE = 34.0
+"""Points that such a number takes."""
 
 
 def cells(run: Run) -> list[dict[str, Any]]:
@@ -35,11 +43,11 @@ def cells(run: Run) -> list[dict[str, Any]]:
 
 
 def measure_cell(run: Run, scheme: str, degrees: int) -> list[Row]:
-    rows = []
+    found = []
     for kind in LOOKS:
         measured = partial(_measured, run, scheme, degrees, kind)
-        rows += attempted(measured, step_degrees=degrees, scheme=scheme, error=kind)
-    return rows
+        found += attempted(measured, step_degrees=degrees, scheme=scheme, error=kind)
+    return found
 
 
 def _measured(run: Run, name: str, degrees: int, kind: str) -> list[Row]:
@@ -52,26 +60,63 @@ def _measured(run: Run, name: str, degrees: int, kind: str) -> list[Row]:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    table = table[table["step_degrees"] == 60]
-    keys = table[table["error"] == "keyframes"].set_index("scheme")
-    names = list(keys["gain_alpha"].sort_values(na_position="last").index)
+    gains, sharing = _gains(table), _sharing(table)
+    calm = gains["gain_alpha"]["keyframes"].loc[list(sharing)].round(2)
+    names = list(calm.sort_values(na_position="last", kind="stable").index)
     fig, panels = style.axes(style.PAGE, ROW * len(names) + 1.3, 1, 3, sharey=True)
     for ax, (column, title) in zip(panels[0], GAINS.items(), strict=True):
-        for error, (marker, color) in LOOKS.items():
-            rows = table[table["error"] == error]
-            y = rows["scheme"].map(names.index)
-            ax.plot(rows[column], y, marker, c=color, mfc="none", label=f"errors of {error}")
-        ax.set(title=title, xlabel="gain")
+        for error in LOOKS:
+            _mark(ax, gains[column][error], names, error, ENDS[column])
+        for height, name in enumerate(names):
+            _beyond(ax, height, gains.loc[name, column], ENDS[column], third_party(name))
+        ax.set(title=title, xlabel="gain", xlim=(0.0, ENDS[column]))
     panels[0, 2].set_xscale("symlog", linthresh=0.1)
-    scheme_rows(panels[0, 0], names)
+    panels[0, 2].set_xlim(-0.02, ENDS["gain_alpha"])
+    rows.label(panels[0, 0], names, sharing, chosen=None)
     style.letters(panels[0])
     style.legend_of(fig, panels[0, 0], 2)
     return fig
 
 
+def _gains(table: pd.DataFrame) -> pd.DataFrame:
+    """Columns (gain, error) by scheme."""
+    shown = table[table["step_degrees"] == ANGLE]
+    wide = shown.pivot(index="scheme", columns="error", values=list(GAINS))
+    return wide.dropna(how="all").astype(float)
+
+
+def _sharing(table: pd.DataFrame) -> dict[str, list[str]]:
+    gains = _gains(table)
+    ends = pd.Series(ENDS).reindex(gains.columns, level=0)
+    return rows.shared(gains.clip(upper=ends, axis=1))
+
+
+def _mark(ax: Any, gains: pd.Series, names: list[str], error: str, end: float) -> None:
+    marker, color, size = LOOKS[error]
+    look = {"marker": marker, "c": color, "ls": "", "ms": size, "mew": 0.9}
+    ax.plot([], [], label=f"errors of {error}", **look)
+    for height, name in enumerate(names):
+        if gains[name] <= end:
+            face = "white" if third_party(name) else color
+            ax.plot(gains[name], height, **look, mfc=face, clip_on=False)
+
+
+def _beyond(ax: Any, height: int, gains: pd.Series, end: float, hollow: bool) -> None:
+    """Gains beyond the end of an axis, in figures there, one left of the other."""
+    arrow = r"$\triangleright$" if hollow else r"$\blacktriangleright$"
+    at = {"textcoords": "offset points", "ha": "right", "va": "center", "fontsize": SMALL}
+    far = [error for error in LOOKS if gains[error] > end]
+    for place, error in enumerate(far):
+        text = f"{float(f'{gains[error]:.2g}'):g}".replace("e+0", "e")
+        where = ((end, height), (2.0 - WIDE * place, 0.0))
+        ax.annotate(f"{text} {arrow}", *where, color=LOOKS[error][1], **at)
+
+
 def caption(table: pd.DataFrame) -> str:
     return (
         "Gain of small errors of keyframes and of their times in (a) orientation, (b) angular velocity, (c) angular "
-        "acceleration, in units of the spacing (60 degree steps); lower is calmer. Rows are sorted by the "
-        "gain of acceleration for errors of keyframes; a piecewise constant rate has no acceleration to be noisy."
+        f"acceleration, in units of the spacing ({ANGLE} degree steps); lower is calmer. Rows are sorted by the "
+        "gain of acceleration for errors of keyframes; a piecewise constant rate has no acceleration to be noisy. "
+        f"Numbers at an arrow are gains beyond the axis; hollow marks are third-party schemes. "
+        f"{rows.said(_sharing(table))}"
     )

@@ -9,7 +9,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from quatspline.catalogue import found
-from quatspline.figures import style
+from quatspline.figures import rows, style
 from quatspline.figures.heat import ROW, label_cells, log_heat
 from quatspline.instruments.reconstruction import EULER, Truth, rebuild, reconstruction, truth
 from quatspline.instruments.summary import ALL, compared
@@ -130,12 +130,11 @@ def _replay(name: str, schemes: Sequence[str]) -> list[dict[str, Any]]:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    panels = [(ALL, each) for each in CUTOFFS if _shown(table, ALL, each).size]
-    panels += [(name, RAW) for name in CONTROLS if _shown(table, name, RAW).size]
-    order = _order(table)
-    fig, axes = style.axes(style.PAGE, ROW * len(order) + 1.3, 1, len(panels))
+    panels, sharing = _panels(table), _sharing(table)
+    names = list(sharing)
+    fig, axes = style.axes(style.PAGE, ROW * len(names) + 1.2, 1, len(panels))
     for ax, (name, each) in zip(axes[0], panels, strict=True):
-        shown = _shown(table, name, each).reindex(order)
+        shown = _shown(table, name, each).reindex(names)
         looks: dict[str, Any] = {
             "names_shown": ax is axes[0, 0],
             "colours": "RdBu_r",
@@ -144,9 +143,23 @@ def draw(table: pd.DataFrame) -> Figure:
         }
         log_heat(ax, shown, "rms angle over slerp's", (1 / SPAN, SPAN), **looks)
         label_cells(ax, shown.map(_text), shown.gt(DARK) | shown.lt(1 / DARK))
-        ax.set(title=_title(name, each), xlabel="every ... frame kept")
+        ax.set(title=_title(name, each), xlabel="one frame kept of")
+    rows.label(axes[0, 0], names, sharing, None)
     style.letters(axes[0])
     return fig
+
+
+def _panels(table: pd.DataFrame) -> list[tuple[str, str]]:
+    """Clips and filters of which there are numbers."""
+    panels = [(ALL, each) for each in CUTOFFS] + [(name, RAW) for name in CONTROLS]
+    return [panel for panel in panels if _shown(table, *panel).size]
+
+
+def _sharing(table: pd.DataFrame) -> dict[str, list[str]]:
+    """Schemes with a row of their own, the best on recorded motion first."""
+    shown = {panel: _shown(table, *panel) for panel in _panels(table)}
+    ratios = pd.concat(shown, axis=1).reindex(_order(table))
+    return rows.shared(ratios.clip(1 / SPAN, SPAN).transform(np.log))
 
 
 SPAN = 8.0
@@ -157,17 +170,17 @@ TICKS = {1 / 8: "1/8", 1 / 2: "1/2", 2.0: "2", 8.0: "8"}
 
 
 def _shown(table: pd.DataFrame, name: str, filter: str) -> pd.DataFrame:
-    rows = table[(table["clip"] == name) & (table["filter"] == filter)]
-    return rows.pivot(index="scheme", columns="every", values="over_slerp").dropna(how="all")
+    own = table[(table["clip"] == name) & (table["filter"] == filter)]
+    return own.pivot(index="scheme", columns="every", values="over_slerp").dropna(how="all")
 
 
 def _order(table: pd.DataFrame) -> list[str]:
     """Schemes that ran, the best on recorded motion first."""
-    rows = table[(table["clip"] == ALL) & table["over_slerp"].notna()]
-    logs = np.log(rows["over_slerp"])
+    own = table[(table["clip"] == ALL) & table["over_slerp"].notna()]
+    logs = np.log(own["over_slerp"])
     # Over the other schemes of a cell: one that did not run in all is not judged by which.
-    logs -= logs.groupby([rows["filter"], rows["every"]]).transform("median")
-    return [str(name) for name in logs.groupby(rows["scheme"]).mean().sort_values().index]
+    logs -= logs.groupby([own["filter"], own["every"]]).transform("median")
+    return [str(name) for name in logs.groupby(own["scheme"]).mean().sort_values().index]
 
 
 def _text(ratio: float) -> str:
@@ -194,5 +207,6 @@ def caption(table: pd.DataFrame) -> str:
     return (
         f"Rms angle of joints at the frames left out when every 2nd, 4th, ... frame is kept, over slerp's, geometric "
         f"mean ({_count(clips)}): below 1 (blue) is better than slerp. Recordings as they are, low-pass filtered, "
-        f"and two controls, motion without noise and noise without motion.{made}"
+        f"and two controls, motion without noise and noise without motion; grey: too slow, or refused.{made} "
+        f"{rows.said(_sharing(table))}"
     )

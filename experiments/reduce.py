@@ -9,7 +9,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
 from quatspline import catalogue
-from quatspline.figures import style
+from quatspline.catalogue import called
+from quatspline.figures import direct, named, style
 from quatspline.instruments.reconstruction import truth
 from quatspline.instruments.reduction import reduction
 from quatspline.instruments.summary import ALL, compared
@@ -88,14 +89,14 @@ def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     filters = [each for each in CUTOFFS if (table["filter"] == each).any()]
-    fig, panels = style.axes(style.PAGE, 3.4, 1, 2 * len(filters))
+    fig, panels = style.axes(style.PAGE, 3.0, 1, 2 * len(filters))
     panels[0, len(filters) - 1].sharey(panels[0, 0])
     panels[0, -1].sharey(panels[0, len(filters)])
     for k, each in enumerate(filters):
         rows = table[(table["filter"] == each) & table["scheme"].isin(SHOWN)]
         shares, ratios = panels[0, k], panels[0, len(filters) + k]
         _lines(shares, _shares(rows))
-        _lines(ratios, rows[rows["clip"] == ALL].set_index("error_degrees"), "over_slerp")
+        ends = _lines(ratios, rows[rows["clip"] == ALL].set_index("error_degrees"), "over_slerp")
         title = "as recorded" if each == RAW else f"below {each}"
         shares.set(title=title, yscale="log", ylabel="keyframes per frame" if k == 0 else "")
         ratios.set(title=title, ylabel="keyframes over slerp's" if k == 0 else "")
@@ -108,7 +109,7 @@ def draw(table: pd.DataFrame) -> Figure:
         ax.minorticks_off()
         ax.set_xlabel("allowed error (degrees)")
     style.letters(panels[0])
-    style.legend_of(fig, panels[0, 0], len(SHOWN))
+    named.name_ends(fig, {panels[0, -1]: ends})
     return fig
 
 
@@ -120,11 +121,17 @@ def _shares(rows: pd.DataFrame) -> pd.DataFrame:
     return sums.set_index("error_degrees")
 
 
-def _lines(ax: Any, rows: pd.DataFrame, column: str = "share") -> None:
+def _lines(ax: Any, rows: pd.DataFrame, column: str = "share") -> dict[str, direct.End]:
+    """Draw a curve per scheme; where each ends."""
+    ends = {}
     for name in SHOWN:
-        own = rows.loc[rows["scheme"] == name, column]
-        if own.notna().any():
-            ax.plot(own.index, own, label=name, **style.scheme_style(name))
+        own = rows.loc[rows["scheme"] == name, column].dropna().sort_index()
+        if len(own):
+            look = style.scheme_style(name)
+            ax.plot(own.index, own, **look)
+            tip = (float(own.index[-1]), float(own.iloc[-1]))
+            ends[name] = direct.End(*tip, called(name), look["color"], look["linestyle"])
+    return ends
 
 
 def _count(clips: list[str]) -> str:

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from quatspline.curve import Curve
-from quatspline.discovery import PROPOSED, Found, discover, shipped
+from quatspline.discovery import PROPOSED, Found, discover, named, shipped
 from quatspline.options import nearest
 from quatspline.peers import installed
 from quatspline.system.forking import undivided
@@ -84,11 +84,20 @@ def _changed(folder: Path) -> int:
         return 0
 
 
-def _find(places: tuple[Path, ...]) -> dict[str, Found]:
+def names() -> list[str]:
+    """Sorted names of every scheme, usable or not; nothing is imported."""
+    return sorted(set(named(_files(_folders(os.environ.get(FOLDERS, ""))))))
+
+
+def _files(places: tuple[Path, ...]) -> tuple[Path, ...]:
     files = [path for folder in places for path in sorted(folder.glob("[!_]*.py"))]
     once = {path.resolve(): path for path in reversed(files)}  # the first folder that has it
+    return tuple(reversed(once.values()))
+
+
+def _find(places: tuple[Path, ...]) -> dict[str, Found]:
     everything: dict[str, Found] = {}
-    for item in discover(tuple(reversed(once.values()))):
+    for item in discover(_files(places)):
         other = everything.get(item.name)
         everything[item.name] = item if other is None else _twice(other, item)
         if item.scheme is not None:

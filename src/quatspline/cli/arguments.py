@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Literal, NoReturn
 
 from quatspline import __version__
+from quatspline.cli import completion
 from quatspline.system.sentence import MOST as SENTENCE
 from quatspline.system.sentence import one_line
 
@@ -42,7 +43,8 @@ def parser() -> argparse.ArgumentParser:
     commands = whole.add_subparsers(metavar="COMMAND", required=True, dest="name")
     commands.add_parser("list", help="list the schemes and what they claim")
     options = commands.add_parser("options", help="show the options of a scheme")
-    options.add_argument("scheme", metavar="SCHEME", help="see quatspline list")
+    known = options.add_argument("scheme", metavar="SCHEME", help="see quatspline list")
+    _completed(known, completion.schemes)
     _add_run(commands)
     _add_compare(commands)
     _add_sample(commands)
@@ -64,7 +66,8 @@ def _add_run(commands: Any) -> None:
         "size. The same command resumes an interrupted run where it stopped.",
     )
     run.closing = _experiments
-    run.add_argument("experiments", nargs="*", metavar="EXPERIMENT", help="default: all")
+    which = run.add_argument("experiments", nargs="*", metavar="EXPERIMENT", help="default: all")
+    _completed(which, completion.experiments)
     _add_schemes(run)
     size = run.add_mutually_exclusive_group()
     few, many = "few cases and short rounds", "the sizes that docs and findings quote"
@@ -139,7 +142,8 @@ def _add_needs(compare: argparse.ArgumentParser) -> None:
 def _add_sample(commands: Any) -> None:
     sample = commands.add_parser("sample", help="sample a scheme's curve through keyframes")
     _add_keyframes(sample)
-    sample.add_argument("--scheme", required=True, metavar="S", help="see quatspline list")
+    known = sample.add_argument("--scheme", required=True, metavar="S", help="see quatspline list")
+    _completed(known, completion.schemes)
     grid = sample.add_mutually_exclusive_group(required=True)
     grid.add_argument("--rate", type=_rate, metavar="HZ", help="samples per second")
     grid.add_argument(
@@ -165,7 +169,8 @@ def _add_reduce(commands: Any) -> None:
     bound = "the largest angle allowed at a frame left out, such as 0.5deg or 0.01rad"
     reduce.add_argument("--error", type=_angle, required=True, metavar="ANGLE", help=bound)
     scheme = "the scheme that rebuilds the motion; default: %(default)s"
-    reduce.add_argument("--scheme", default="slerp", metavar="S", help=scheme)
+    known = reduce.add_argument("--scheme", default="slerp", metavar="S", help=scheme)
+    _completed(known, completion.schemes)
     _add_option(reduce, "of the scheme")
     together = "use one set of frames for all joints instead of one per joint"
     reduce.add_argument("--together", action="store_true", help=together)
@@ -225,19 +230,26 @@ def _add_file(parser: argparse.ArgumentParser, nargs: Literal["?"] | None = None
 
 def _add_schemes(parser: argparse.ArgumentParser) -> None:
     names = "names of schemes, separated by blanks or commas"
-    parser.add_argument("--schemes", nargs="+", metavar="S", action="append", help=names)
+    known = parser.add_argument("--schemes", nargs="+", metavar="S", action="append", help=names)
+    _completed(known, completion.listed_schemes)
 
 
 def _add_option(parser: argparse.ArgumentParser, whose: str) -> None:
     told = f"an option {whose}; may be repeated; see quatspline options S"
-    parser.add_argument(
+    known = parser.add_argument(
         "--option", dest="options", action="append", default=[], metavar="NAME=VALUE", help=told
     )
+    _completed(known, completion.options)
 
 
 def _add_force(parser: argparse.ArgumentParser) -> None:
     replaced = "also replace files that quatspline did not write, or that were edited since"
     parser.add_argument("--force", action="store_true", help=replaced)
+
+
+def _completed(argument: argparse.Action, completer: Callable[..., list[str]]) -> None:
+    """Have shells complete an argument so: argcomplete looks for an attribute of this name."""
+    vars(argument)["completer"] = completer
 
 
 def _number(kind: type, accepts: Callable[[Any], bool], wanted: str) -> Callable[[str], Any]:

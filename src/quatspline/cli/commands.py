@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from quatspline.cli.arguments import REFUSED, parser
+from quatspline.cli.completion import offered
 from quatspline.cli.notes import note
 from quatspline.system.atomic import naming
 from quatspline.system.ending import Ended, ending
@@ -54,7 +55,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     if sys.stdout is None:  # and the next file that is opened would get its number
         return _told("standard output is closed: point it to a file or to /dev/null", REFUSED)
     try:
-        arguments = parser().parse_args(given)
+        commands = parser()
+        offered(commands)
+        arguments = commands.parse_args(given)
         arguments.command = ["quatspline", *given]
         with ending(partial(_interrupted, arguments.name)):
             with reserved():

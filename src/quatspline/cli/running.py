@@ -163,9 +163,9 @@ def _perform(experiment: Experiment, run: Run, results: Results) -> None:
         keys=getattr(module, "KEYS", None),
         closing=getattr(module, "text", None),
     )
-    if hasattr(module, "caption"):
-        results.text(f"{name}.caption.txt", module.caption(table).strip() + "\n")
     if hasattr(module, "draw") and not _all_failed(table):
+        if hasattr(module, "caption"):
+            results.text(f"{name}.caption.txt", module.caption(table).strip() + "\n")
         _draw(module, table, name, results)
     if hasattr(module, "replays"):
         results.replays(name, module.replays(run))
