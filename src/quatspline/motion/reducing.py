@@ -47,7 +47,7 @@ class Reduction:
     Attributes
     ----------
     frames : indices of the frames that are kept, by joint
-    motion : rebuilt from them at the times of the source; positions are the source's
+    motion : the motion rebuilt from them at the times of the source, with the source's positions
     largest : the largest local angle (rad) of a joint at a frame left out
     failures : why the scheme has no curve for a joint, which then keeps all of its frames
     """

@@ -34,7 +34,11 @@ COLUMNS = (
     ("order", "order", "order of the error on a smooth motion; more is better"),
     ("torque", "torque", "median torque energy over the least possible; less is better"),
     ("failure", "worst failure", "the most serious failure found"),
-    ("time", "ns per sample", "time per sample, of 10,000 samples or the most measured; less is better"),
+    (
+        "time",
+        "ns per sample",
+        "time per sample, of 10,000 samples or the most measured; less is better",
+    ),
     ("closes", "closes", "whether the scheme has closed curves"),
     (
         "origin",

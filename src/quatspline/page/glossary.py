@@ -33,7 +33,9 @@ GLOSSARY: dict[str, Column] = {
     "relative": Column("largest jump as a share of the quantity's size", "", "less"),
     "measured_k": Column("measured k of C^k", "", "more"),
     "claimed_k": Column("claimed k of C^k"),
-    "least_key_speed": Column("least speed at an inner keyframe relative to the mean speed", "", "more"),
+    "least_key_speed": Column(
+        "least speed at an inner keyframe relative to the mean speed", "", "more"
+    ),
     "peak_speed": Column("peak speed relative to the mean speed", "", "less"),
     "seconds_median": Column("median time", "s", "less"),
     "seconds_iqr": Column("interquartile range of the times", "s", "less"),
@@ -49,13 +51,21 @@ GLOSSARY: dict[str, Column] = {
     "lookahead": Column("keyframes after a segment that shape it", "", "less"),
     "decay": Column("factor of the response from segment to segment", "", "less"),
     "gain": Column("movement of the orientation relative to the errors", "", "less"),
-    "gain_omega": Column("movement of the velocity times spacing, relative to the errors", "", "less"),
+    "gain_omega": Column(
+        "movement of the velocity times spacing, relative to the errors", "", "less"
+    ),
     "gain_alpha": Column(
         "movement of the acceleration times spacing squared, relative to the errors", "", "less"
     ),
-    "spacing_1deg": Column("largest spacing below which the error stays under 1 degree", "t", "more"),
-    "spacing_0.1deg": Column("largest spacing below which the error stays under 0.1 degrees", "t", "more"),
-    "spacing_0.01deg": Column("largest spacing below which the error stays under 0.01 degrees", "t", "more"),
+    "spacing_1deg": Column(
+        "largest spacing below which the error stays under 1 degree", "t", "more"
+    ),
+    "spacing_0.1deg": Column(
+        "largest spacing below which the error stays under 0.1 degrees", "t", "more"
+    ),
+    "spacing_0.01deg": Column(
+        "largest spacing below which the error stays under 0.01 degrees", "t", "more"
+    ),
     "unevenness": Column("largest possible ratio of two knot spacings"),
     "share_converged": Column("share of the sets that converge", "", "more"),
     "share_jumping": Column("share of the sets whose acceleration jumps", "", "less"),
@@ -87,8 +97,12 @@ GLOSSARY: dict[str, Column] = {
     "fairness.worst": Column("worst torque energy relative to the minimum", "", "less"),
     "worst_finite": Column("worst torque energy of sets where it is finite", "", "less"),
     "jumping": Column("sets on which the velocity jumps or the curve leaps", "", "less"),
-    "fairness.jerk_median": Column("median of jerk energy relative to that of the minimum", "", "less"),
-    "fairness.length_median": Column("median of arc length relative to that of the minimum", "", "less"),
+    "fairness.jerk_median": Column(
+        "median of jerk energy relative to that of the minimum", "", "less"
+    ),
+    "fairness.length_median": Column(
+        "median of arc length relative to that of the minimum", "", "less"
+    ),
     "fairness.peak_median": Column(
         "median of peak acceleration relative to that of the minimum", "", "less"
     ),
@@ -150,7 +164,9 @@ GLOSSARY: dict[str, Column] = {
     "end_cm": Column("rms distance of end effectors", "cm", "less"),
     "end_largest_cm": Column("largest distance of an end effector", "cm", "less"),
     **{
-        f"reconstruct.{name}": Column(f"rms error of {what} relative to the rms of the truth", "", "less")
+        f"reconstruct.{name}": Column(
+            f"rms error of {what} relative to the rms of the truth", "", "less"
+        )
         for name, what in (("omega", "angular velocity"), ("alpha", "angular acceleration"))
     },
     "error_degrees": Column("allowed error", "degrees"),

@@ -35,7 +35,8 @@ KEPT: tuple[Section, ...] = (
     Section(
         "kept",
         "Schemes compared",
-        "One row per scheme, measured at the frames left out. Sort by any column; the line above the table states the criterion.",
+        "One row per scheme, measured at the frames left out. Sort by any column; the line above the table states the "
+        "criterion.",
         ("kept", "joints"),
         (
             Plot(
