@@ -24,12 +24,12 @@ TITLE = "Continuity at keyframes"
 PAPER = False
 KEYS = ["case", "scheme", "order"]
 NOTE = (
-    "Jump: the largest difference of one-sided limits over inner keyframes, of q also inside segments; lower is "
-    "smoother. An order counts as continuous when its jump is rounding (1e-8 of its size in closed forms; for a "
-    "library's curve, known by its orientations, 1e-7/h, 1e-6/h^2, 1e-3/h^3) or falls with the step; the first that "
-    "stays is the control. measured_k is k of C^k (-1: the curve leaps; 3: no jump up to the third derivative). "
-    "least_key_speed and peak_speed are over the mean speed: 0 is a stop at a keyframe. Iterative schemes are solved "
-    "to 1e-11."
+    "Jump: the largest difference between one-sided limits over inner keyframes, for q also inside segments; lower is "
+    "smoother. An order counts as continuous if its jump is within rounding (1e-8 of its size for closed forms; for a "
+    "library's curve, of which only orientations are known, 1e-7/h, 1e-6/h^2, 1e-3/h^3) or shrinks with the step; the "
+    "first that does not shrink is the control. measured_k is k of C^k (-1: the curve leaps; 3: no jump up to the "
+    "third derivative). least_key_speed and peak_speed are relative to the mean speed: 0 is a stop at a keyframe. "
+    "Iterative schemes are solved to 1e-11."
 )
 FORMATS = {
     "jump": ".2e",

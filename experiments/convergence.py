@@ -38,16 +38,16 @@ BATCH = 100
 """Keyframes solved in one call: sets on the same times, of which every call draws its own."""
 
 NOTE = (
-    "Random walks about random axes, open; unevenness is the largest possible ratio of two knot spacings, which are "
-    f"log-uniform. At most {LIMIT} iterations to a residual of 1e-6 (min-torque: to a change). Failures: limit, the "
-    "iterations ran out; wrong, at rest where the curve misses keyframes; gave_up, the solver ended its search; "
-    "not_finite. Iterations are of the sets that converge. rate is the factor by which a late iteration reduces the "
-    "change (median of a few sets), rate_theory the spectral radius of the flat equations for the same knots: above 1 "
-    "the linear iterations diverge. jump_* are acceleration jumps at inner keyframes over the peak, for curves that "
-    "claim C2: share_jumping is the share of sets where it counts as a jump. Libraries that solve all keyframes "
-    "without a report stand here by that jump alone, of jump_sets sets. Where the keyframe updates of a cell reach "
-    "their bound, failure says over budget and sets how many were measured: a few for min-torque. One call solves sets "
-    f"of up to {BATCH} keyframes together, on the same times."
+    "Open random walks about random axes; unevenness is the largest possible ratio of two knot spacings, which are "
+    f"log-uniform. At most {LIMIT} iterations to a residual of 1e-6 (min-torque: to a change of that size). Failures: "
+    "limit, the iterations ran out; wrong, the iteration settled where the curve misses keyframes; gave_up, the "
+    "solver ended its search; not_finite. Iterations are of the sets that converge. rate is the factor by which a "
+    "late iteration reduces the change (median of a few sets); rate_theory is the spectral radius of the flat "
+    "equations for the same knots, and above 1 the linear iterations diverge. jump_*: acceleration jumps at inner "
+    "keyframes relative to the peak, for curves that claim C2; share_jumping is the share of sets in which it counts "
+    "as a jump. Libraries that solve for all keyframes without a report are listed by that jump alone, over jump_sets "
+    "sets. Where the keyframe updates of a cell reach their limit, failure says over budget, and sets says how many "
+    f"were measured: a few for min-torque. One call solves sets of up to {BATCH} keyframes together, on the same times."
 )
 FORMATS = {"seconds_median": ".2e", "jump_median": ".1e", "jump_worst": ".1e"}
 ANGLES = (1, 30, 60, 90, 120, 150, 170)
@@ -306,8 +306,9 @@ def _power(value: float) -> str:
 def caption(table: pd.DataFrame) -> str:
     count = int(table.loc[table["keyframes"] <= COUNTS[-1], "keyframes"].max())
     return (
-        f"Share of random sets of {count} keyframes that are solved within {LIMIT} iterations, against the step angle "
-        "and the unevenness of the knots (largest possible ratio of spacings); written on it is the median of "
-        "iterations of the sets that converge. Libraries that tell of no solve stand below, under a bar of their own: "
-        "the share of sets without a jump of acceleration, with the worst jump over the peak written."
+        f"Share of random sets of {count} keyframes that are solved within {LIMIT} iterations, by step angle and by "
+        "unevenness of the knots (largest possible ratio of spacings). The number in a cell is the median of the "
+        "iterations of the sets that converge. Libraries that do not report on their solves are shown below, with "
+        "their own colour bar: the share of sets without a jump of acceleration, and as a number the worst jump "
+        "relative to the peak."
     )

@@ -1,4 +1,4 @@
-"""What smoothing buys where keyframes are noisy, and where it buys nothing: on motion that is known and on clips."""
+"""What smoothing gains where keyframes are noisy, and where it gains nothing: on a known motion and on clips."""
 
 from functools import cache, partial
 from typing import Any
@@ -24,17 +24,17 @@ TITLE = "Noisy keyframes, with and without smoothing"
 PAPER = False
 KEYS = ["clip", "every", "noise_degrees", "scheme"]
 NOTE = (
-    "Of dense motion every so many-th frame and the last are kept, and white rotation errors of the standard deviation "
-    "noise_degrees about each axis are added to them; the frames left out, without added noise, are what curves are "
-    "held against. 'tumble' is analytic: several draws of the noise stand for joints, and its truth is exact; clips "
-    f"are recordings (the project's own '{OWN}' where QUATSPLINE_MOTIONS names none), whose held-out frames have "
-    f"noise of their own. '{ALL}' takes the joints of all clips together. rms_degrees: a joint's rms angle, median "
-    "over joints; worst_degrees: the largest; keyframes_degrees: the same at the keyframes, which an interpolant "
-    "misses by the noise itself, sqrt(3) noise_degrees; over_slerp: a joint's rms angle over slerp's, geometric mean, "
-    "most_over_slerp: the largest; omega: rms error of the angular velocity, degrees per second, of the tumble; "
-    "told_degrees: the noise as estimated from the keyframes alone. Lower is better but for told_degrees, which should "
-    "be noise_degrees. smoothing-spline chooses its weight by itself, by cross-validation (', gcv') or for the noise "
-    "that was added (', told'), where some was."
+    "Every n-th frame of a dense motion and the last one are kept, and white rotation errors with the standard "
+    "deviation noise_degrees about each axis are added to them. Curves are compared with the frames left out, which "
+    "have no added noise. 'tumble' is analytic: several draws of the noise take the place of joints, and its truth is "
+    f"exact. Clips are recordings (the project's own '{OWN}' if QUATSPLINE_MOTIONS names none), and their frames left "
+    f"out have noise of their own. '{ALL}' pools the joints of all clips. rms_degrees: a joint's rms angle, median "
+    "over joints; worst_degrees: the largest; keyframes_degrees: the same at the keyframes, where an interpolant is "
+    "off by the noise itself, sqrt(3) noise_degrees; over_slerp: a joint's rms angle relative to slerp's, geometric "
+    "mean; most_over_slerp: the largest; omega: rms error of the angular velocity, degrees per second, of the tumble; "
+    "told_degrees: the noise as estimated from the keyframes alone. Lower is better, except for told_degrees, which "
+    "should equal noise_degrees. smoothing-spline chooses its weight by itself, by cross-validation (', gcv') or from "
+    "the noise that was added, if any (', told')."
 )
 FORMATS = {
     **dict.fromkeys(("rms_degrees", "worst_degrees", "keyframes_degrees", "told_degrees"), ".3f"),
@@ -184,9 +184,9 @@ def caption(table: pd.DataFrame) -> str:
     clips = sorted(set(table["clip"]) - {ALL, TUMBLE})
     made = " No recorded clip was given: this is the project's own walk." if clips == [OWN] else ""
     return (
-        "Errors to the truth at frames left out against the white noise added to the keyframes: (a) of orientation "
-        "and (b) of angular velocity on a known motion, (c) of orientation on recordings as multiples of slerp's, "
-        f"geometric mean over joints ({len(clips)} clip{'' if len(clips) == 1 else 's'}). Left of the dashed line "
-        "nothing is added. Interpolants pass the noise on; the smoothing spline chooses how near to keep to its "
-        f"keyframes, by default (curve), by cross-validation (x) or told the noise (+).{made}"
+        "Errors at the frames left out, by the white noise added to the keyframes: (a) of the orientation and (b) of "
+        "the angular velocity on a known motion, (c) of the orientation on recordings as multiples of slerp's error, "
+        f"geometric mean over joints ({len(clips)} clip{'' if len(clips) == 1 else 's'}). Left of the dashed line no "
+        "noise is added. Interpolants pass the noise on. The smoothing spline chooses how close to keep to its "
+        f"keyframes: by default (curve), by cross-validation (x) or given the noise (+).{made}"
     )

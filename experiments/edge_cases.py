@@ -17,12 +17,12 @@ TITLE = "Edge cases"
 PAPER = False
 KEYS = ["case", "scheme"]
 NOTE = (
-    "result: exact (to 1e-6 of the largest step), as claimed (off only where the scheme claims nothing), wrong, NaN, "
-    "or error with its reason. checked: by claimed_constant_rate, against the truth, the constant rate or rest that "
-    "keyframes suggest, everywhere or away from the ends, or that keys are met; of all, that values are finite and of "
-    "norm 1, and that no curve is off by half a step. deviation: the largest angle, of a wrong one where it is at "
-    "fault, lower is better; relative: over the largest step. Iterative schemes are solved to 1e-11. Both "
-    "sizes are one."
+    "result: exact (to 1e-6 of the largest step), as claimed (deviates only where the scheme claims nothing), wrong, "
+    "NaN, or error with its reason. checked: depending on claimed_constant_rate, the curve is compared with the true "
+    "motion at a constant rate or at rest that the keyframes imply, everywhere or away from the ends, or only the "
+    "keyframes must be met. All values must be finite and of norm 1, and no curve may be off by half a step. "
+    "deviation: the largest angle (for a wrong result, the largest at fault); lower is better. relative: the same "
+    "relative to the largest step. Iterative schemes are solved to 1e-11. Both sizes are the same."
 )
 FORMATS = {"deviation": ".1e", "relative": ".1e"}
 RESULTS = {
@@ -80,8 +80,8 @@ def _short(relative: float) -> str:
 
 def caption(table: pd.DataFrame) -> str:
     return (
-        "What each scheme makes of edge cases. Numbers: how far off, over the largest step, where the result is wrong "
-        "or off only where nothing is claimed; 'error': refused or failed, with the reason in the table. A scheme "
-        "without a closed curve refuses the full turn, one of uniform times refuses others. Rows are sorted by the "
-        f"number of cases without a fault.{matrix.said(matrix.alike(*_matrices(table)))}"
+        "How each scheme handles edge cases. Numbers: how far off the result is, relative to the largest step, where "
+        "it is wrong or off only where nothing is claimed; 'error': refused or failed, with the reason in the table. "
+        "A scheme without a closed curve refuses the full turn; a scheme for uniform times refuses others. Rows are "
+        f"sorted by the number of cases without a fault.{matrix.said(matrix.alike(*_matrices(table)))}"
     )

@@ -23,15 +23,15 @@ TITLE = "Excursion: overshoot, and wandering during holds"
 PAPER = False
 KEYS = ["data", "scheme"]
 NOTE = (
-    "How far a curve leaves the arc from one keyframe to the next, of every segment that moves, as a share of its "
-    "step: off, the largest distance to the arc; over, the largest way beyond either end along its great circle; "
-    "back, the largest fall from the farthest progress so far; each with the median, the 95 % quantile and the worst "
-    "of all segments. overshot: the share of segments with over above 1 % of the step; over_degrees: the worst over "
-    "as an angle. wander: the largest angle from the keyframe during a hold, in degrees of rotation, a full turn "
-    "being 360. Less is better; off cannot be 0 where a curve of continuous velocity turns a corner. Seeded open "
-    "sets: 'generic', those of the table fairness; 'hold 1 : 1' and '10 : 1', 90 degree moves about random axes "
-    "beside a hold that lasts as long as one of them or ten times as long; 'one axis', back and forth. Iterative "
-    "schemes are solved to 1e-11."
+    "How far a curve leaves the arc from one keyframe to the next, for every segment that moves, as a share of its "
+    "step. off: the largest distance from the arc; over: the furthest overshoot beyond either end, along its great "
+    "circle; back: the largest retreat from the furthest progress so far; each with the median, the 95 % quantile and "
+    "the worst of all segments. overshot: the share of segments in which over exceeds 1 % of the step; over_degrees: "
+    "the worst over as an angle. wander: the largest angle from the keyframe during a hold, in degrees of rotation, "
+    "where a full turn is 360. Less is better; off cannot be 0 where a curve of continuous velocity turns a corner. "
+    "Seeded open sets: 'generic', those of the table fairness; 'hold 1 : 1' and 'hold 10 : 1', 90 degree moves about "
+    "random axes beside a hold that lasts as long as one of them or ten times as long; 'one axis', back and forth. "
+    "Iterative schemes are solved to 1e-11."
 )
 SHARES, LEVELS = ("off", "over", "back"), {"median": 0.5, "q95": 0.95, "worst": 1.0}
 FORMATS = {
@@ -168,8 +168,8 @@ def caption(table: pd.DataFrame) -> str:
     sets = int(table["sets"].max())
     return (
         f"What curves do between keyframes that slerp does not, on {sets} seeded keyframe sets of each kind. (a) Angle "
-        "from the keyframe during a hold beside moves a tenth as long: median (mark) to worst (end of the bar). (b) "
-        "Overshoot of steps about one axis, as a share of the step: 95 % quantile to worst. (c) The same of generic "
-        f"sets. What is below {LEAST:g} is drawn there. Rows are sorted by (a), those without a curve there last. "
-        f"{said(COLOURED)} {scheme_rows.said(_sharing(table))}"
+        "from the keyframe during a hold that is ten times as long as the moves beside it: median (mark) to worst "
+        "(end of the bar). (b) Overshoot of steps about one axis, as a share of the step: 95 % quantile to worst. (c) "
+        f"The same for generic sets. Values below {LEAST:g} are drawn there. Rows are sorted by (a), those without a "
+        f"value there last. {said(COLOURED)} {scheme_rows.said(_sharing(table))}"
     )

@@ -27,17 +27,17 @@ TITLE = "Fairness: torque energy over the minimum"
 PAPER = False
 KEYS = ["data", "scheme"]
 NOTE = (
-    "Ratios to min-torque on the same keyframes (its energy is an upper bound of the true minimum); lower is "
-    "fairer. least to worst: the integral of |alpha|^2; jerk: that of |alpha'|^2; length: of |omega|; peak: the "
-    "largest |alpha|. Seeded sets of 4 to 9 keyframes, spacings uniform in [0.5, 1.5], open: 'committed' has a step "
-    "of 20 to 110 degrees a set, the others one step angle. Quadrature is refined inside segments until two levels "
-    "agree to 1e-7; |alpha| is read on both sides of every keyframe, too. On every set velocity is searched for "
-    "jumps, at keyframes and inside segments: where it jumps, or the curve leaps, the energy of that set is infinite, "
-    "and jumping says on how many; worst_finite is the worst of the others. Iterative schemes are solved to 1e-9. "
-    "curvature_median: the median over curvature_sets sets of the path's curvature energy, the integral of kappa^2 by "
-    "arc length on S^3, over the least of all paths through the keyframes that are no longer than min-torque's, by "
-    "refinement of chains of arcs until two levels agree to 1e-4; infinite on curvature_infinite of them; "
-    "curvature_reason is the first reason."
+    "Ratios to min-torque on the same keyframes (its energy is an upper bound on the true minimum); lower is fairer. "
+    "least to worst: the integral of |alpha|^2; jerk: that of |alpha'|^2; length: that of |omega|; peak: the largest "
+    "|alpha|. Seeded open sets of 4 to 9 keyframes with spacings uniform in [0.5, 1.5]: each set of 'committed' has "
+    "one step angle between 20 and 110 degrees; the others have the step angle named. Quadrature is refined inside "
+    "segments until two levels agree to 1e-7; |alpha| is also read on both sides of every keyframe. Every set is "
+    "searched for velocity jumps, at keyframes and inside segments. Where the velocity jumps or the curve leaps, the "
+    "energy of the set is infinite; jumping counts these sets, and worst_finite is the worst of the others. Iterative "
+    "schemes are solved to 1e-9. curvature_median: the median over curvature_sets sets of the path's curvature "
+    "energy, the integral of kappa^2 by arc length on S^3, relative to the least of all paths through the keyframes "
+    "that are no longer than min-torque's, found by refining chains of arcs until two levels agree to 1e-4. It is "
+    "infinite on curvature_infinite of the sets; curvature_reason is the first reason."
 )
 FORMATS = {
     "least": ".6f",
@@ -214,8 +214,8 @@ def _excess(ax: Any, rows: pd.DataFrame, names: list[str]) -> None:
 def caption(table: pd.DataFrame) -> str:
     sets = int(table.loc[table["data"] == COMMITTED, "sets"].max())
     return (
-        f"(a) Excess of the torque energy over the least on {sets} committed keyframe sets: median (mark), range "
-        f"(bar); below {LEAST:g} drawn there; lower is fairer. (b) Its median on sets of one step angle; grey: the "
-        "scheme does not apply, or its energy is infinite. Schemes whose velocity jumps everywhere are left out. "
-        f"{SAID} {scheme_rows.said(_sharing(table))}"
+        f"(a) Excess of the torque energy over the least on {sets} committed keyframe sets: median (mark) and range "
+        f"(bar). Values below {LEAST:g} are drawn there; lower is fairer. (b) Its median on sets of one step angle; "
+        "grey: the scheme does not apply, or its energy is infinite. Schemes whose velocity jumps everywhere are left "
+        f"out. {SAID} {scheme_rows.said(_sharing(table))}"
     )

@@ -17,11 +17,11 @@ PAPER = False
 KEYS = ["degree", "ends", "keyframes"]
 NOTE = (
     "moving-frame through keyframes of a closed motion, a spin of one turn times a roll of two; lower is better. "
-    "order: of angle, from the level before. constant: angle over h^(k+1); expected: what the interior of a flat "
-    "spline predicts, which closed curves have everywhere. axis_constant: the largest error of an entry of the axes "
-    "over h^(k+1) max |R^(k+1)|; axis_bound: that of the worst function on uniform knots. 'given': complete ends with "
-    "the motion's own velocities and, from degree 5, accelerations; 'complete': all estimated. Below 1e-14 rad errors "
-    "are rounding, and have no constant."
+    "order: of angle, relative to the previous level. constant: angle divided by h^(k+1); expected: what the interior "
+    "of a flat spline predicts, which applies everywhere on closed curves. axis_constant: the largest error of an "
+    "entry of the axes divided by h^(k+1) max |R^(k+1)|; axis_bound: the same for the worst function on uniform "
+    "knots. 'given': complete ends with the motion's own velocities and, from degree 5, accelerations; 'complete': "
+    "all of them estimated. Errors below 1e-14 rad are rounding and have no constant."
 )
 FORMATS = {
     "spacing": ".3g",
@@ -80,8 +80,8 @@ def draw(table: pd.DataFrame) -> Figure:
 
 def caption(table: pd.DataFrame) -> str:
     return (
-        "Largest angle between moving frames and the closed motion that their keyframes come from, against the "
-        "spacing, by the degree of the splines: (a) closed curves, with the constants of flat splines dotted; the "
-        "same motion cut open (b) with complete ends, estimated from the keyframes, (c) with natural ones, which "
-        "leave their own error whatever the degree is inside."
+        "Largest angle between moving frames and the closed motion from which their keyframes come, by spacing and by "
+        "degree of the splines: (a) closed curves, with the constants of flat splines dotted; the same motion cut "
+        "open (b) with complete ends, estimated from the keyframes, and (c) with natural ends, which have an error of "
+        "their own whatever the degree inside."
     )

@@ -20,10 +20,10 @@ TITLE = "Invariance"
 PAPER = False
 KEYS = ["step_degrees", "scheme", "property"]
 NOTE = (
-    "deviation: the largest angle between the curve of changed keyframes and the curve changed likewise (lower is "
-    "better); relative: its share of the step; invariant: relative at most 1e-7. half-turn shell: base frames in which "
-    "a keyframe lies 170 to 190 degrees from the frame of reference. Random walks of 7 keyframes at uneven times "
-    "(uniform where a scheme takes no others); iterative schemes are solved to 1e-11."
+    "deviation: the largest angle between the curve through changed keyframes and the original curve changed in the "
+    "same way (lower is better); relative: its share of the step; invariant: relative is at most 1e-7. half-turn "
+    "shell: base frames in which a keyframe lies 170 to 190 degrees from the frame of reference. Random walks of 7 "
+    "keyframes at uneven times (uniform for schemes that take no others); iterative schemes are solved to 1e-11."
 )
 FORMATS = {"deviation": ".1e", "relative": ".1e"}
 LIMITS = (1e-12, 10.0)

@@ -18,8 +18,8 @@ TITLE = "Iterations of random keyframes against the step angle"
 PAPER = True
 KEYS = ["data", "scheme", "method", "step_degrees"]
 NOTE = (
-    "Random walks of 5 keyframes (open) and random loops of 6 (closed), every step about a random axis; "
-    f"solved to a relative change of 1e-6. {RECONSTRUCTED} Their rows give their largest step."
+    "Random walks of 5 keyframes (open) and random loops of 6 (closed), with every step about a random axis, "
+    f"solved to a relative change of 1e-6. {RECONSTRUCTED} The rows of the reconstructed cases give their largest step."
 )
 SOLVERS = (
     ("nielson", "jacobi"),
@@ -125,7 +125,7 @@ def _solvers(ax: Any, rows: pd.DataFrame) -> dict[str, End]:
 def caption(table: pd.DataFrame) -> str:
     sets = int(table.sets.max())
     return (
-        f"Iterations of {sets} random keyframe sets a step angle: median (line) and the 5 % to 95 % band of "
+        f"Iterations on {sets} random keyframe sets per step angle: median (line) and the 5 % to 95 % band of "
         "the sets that converge. The paper's counts, 16 and 40, are dotted; stars are the reconstructed "
         f"cases at their largest step. {RECONSTRUCTED}"
     )

@@ -21,14 +21,15 @@ TITLE = "Locality"
 PAPER = False
 KEYS = ["step_degrees", "scheme", "offset"]
 NOTE = (
-    "The middle of 41 keyframes of a random walk, uniform times, is turned by 0.01 rad about three axes. response: "
-    "the largest angle that the curve moves by on a segment, over that of the turn; offset: the segment, counted "
-    "from the keyframe. amplification: the largest response (lower is calmer, 1 is neutral); reach_before, "
-    "reach_after: segments to the last one with a response over 1e-8; support: their sum, which is the number of "
-    "keyframes that shape a segment; decay: factor a segment beyond the second (lower is more local). "
-    "claimed_support is empty where all keyframes count; agrees: the measured support is the claimed one, or a tail "
-    "decays where none is claimed. lookahead: keyframes after a segment's own two that shape it, of 12 that are each "
-    "turned in turn, empty where all do; claimed_lookahead is to be read likewise, and lookahead_agrees compares them."
+    "The middle one of 41 keyframes of a random walk at uniform times is turned by 0.01 rad about three axes. "
+    "response: the largest angle by which the curve moves on a segment, relative to the angle of the turn; offset: "
+    "the segment, counted from the keyframe. amplification: the largest response (lower is calmer, 1 is neutral); "
+    "reach_before, reach_after: segments up to the last one with a response over 1e-8; support: their sum, which is "
+    "the number of keyframes that shape a segment; decay: the factor per segment beyond the second (lower is more "
+    "local). claimed_support is empty where all keyframes count; agrees: the measured support is the claimed one, or "
+    "a tail decays where none is claimed. lookahead: keyframes after a segment's own two that shape it, found by "
+    "turning each of 12 keyframes in turn; empty where all do. claimed_lookahead is read in the same way, and "
+    "lookahead_agrees compares the two."
 )
 FORMATS = {"response": ".2e", "amplification": ".3f", "decay": ".3f"}
 COUNT = 41
@@ -111,8 +112,8 @@ def _sharing(table: pd.DataFrame) -> dict[str, list[str]]:
 
 def caption(table: pd.DataFrame) -> str:
     return (
-        f"(a) How far a turn of one keyframe moves the curve, on the segments to either side of it ({ANGLE} degree "
-        f"steps, uniform times), as a share of the turn; below {LIMITS[0]:g} palest. Rows are sorted by the segments "
-        "reached. (b) The largest movement in segments, over that of the keyframe: above 1 the change is amplified. "
-        f"Hollow marks are third-party schemes. {rows.said(_sharing(table))}"
+        f"(a) How far turning one keyframe moves the curve, on the segments to either side of it ({ANGLE} degree "
+        f"steps, uniform times), as a share of the turn; below {LIMITS[0]:g} palest. Rows are sorted by the number of "
+        "segments reached. (b) The largest movement in segments, relative to that of the keyframe: above 1 the change "
+        f"is amplified. Hollow marks are third-party schemes. {rows.said(_sharing(table))}"
     )

@@ -1,4 +1,4 @@
-"""What a curve makes of small errors of its keyframes and of their times."""
+"""How a curve responds to small errors of its keyframes and of their times."""
 
 from functools import partial
 from typing import Any
@@ -19,11 +19,11 @@ TITLE = "Response to noise"
 PAPER = False
 KEYS = ["step_degrees", "error", "scheme"]
 NOTE = (
-    "Keyframes with rotation errors of 1e-4 rad an axis (error 'keyframes'), or with inner times off by 1e-4 of the "
-    "spacing ('times', counted as the turns that the rms speed makes of them). gain: rms movement of orientation over "
-    "that of the errors; gain_omega, gain_alpha: the same for body velocity and acceleration, times the spacing and "
-    "its square. Lower is calmer; slerp's gain is sqrt(2/3) for keyframes far from the ends. Random walks of 9 "
-    "keyframes, uniform times; schemes that take no others see no errors of times."
+    "Keyframes with rotation errors of 1e-4 rad about each axis (error 'keyframes'), or with inner times off by 1e-4 "
+    "of the spacing ('times', converted to angles by the rms speed). gain: rms movement of the orientation relative "
+    "to the rms of the errors; gain_omega, gain_alpha: the same for body velocity and acceleration, times the spacing "
+    "and its square. Lower is calmer; slerp's gain is sqrt(2/3) for keyframes far from the ends. Random walks of 9 "
+    "keyframes at uniform times; schemes that take no other times are not tried with errors of times."
 )
 FORMATS = dict.fromkeys(("gain", "gain_omega", "gain_alpha"), ".3f")
 COUNT = 9
@@ -114,9 +114,8 @@ def _beyond(ax: Any, height: int, gains: pd.Series, end: float, hollow: bool) ->
 
 def caption(table: pd.DataFrame) -> str:
     return (
-        "Gain of small errors of keyframes and of their times in (a) orientation, (b) angular velocity, (c) angular "
-        f"acceleration, in units of the spacing ({ANGLE} degree steps); lower is calmer. Rows are sorted by the "
-        "gain of acceleration for errors of keyframes; a piecewise constant rate has no acceleration to be noisy. "
-        f"Numbers at an arrow are gains beyond the axis; hollow marks are third-party schemes. "
-        f"{rows.said(_sharing(table))}"
+        "Gain of small errors in keyframes and in their times for (a) orientation, (b) angular velocity and (c) "
+        f"angular acceleration, in units of the spacing ({ANGLE} degree steps); lower is calmer. Rows are sorted by "
+        "the gain of acceleration for errors in keyframes; a piecewise constant rate has no acceleration. Numbers at "
+        f"an arrow are gains beyond the axis; hollow marks are third-party schemes. {rows.said(_sharing(table))}"
     )

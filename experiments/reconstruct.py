@@ -1,4 +1,4 @@
-"""Dense recorded motion, rebuilt from every so many-th frame: what schemes are worth on what people record."""
+"""Dense recorded motion, rebuilt from every n-th frame: what schemes are worth on what people record."""
 
 from collections.abc import Sequence
 from functools import cache, partial
@@ -24,19 +24,19 @@ TITLE = "Recorded motion, rebuilt"
 PAPER = False
 KEYS = ["clip", "filter", "every", "scheme"]
 NOTE = (
-    "Of dense motion every so many-th frame and the last are kept, and the others rebuilt. Clips are the files of the "
-    f"folder that QUATSPLINE_MOTIONS names; without it the project's own, '{OWN}', which its generator made and nobody "
-    f"recorded. '{ALL}' takes the joints of all clips together. filter: what the truth is, the recording (none) or "
-    "what a zero-phase Butterworth filter of its steps leaves. Angles are of local orientations at the frames left "
-    "out, but for those within two keyframes of an end; lower is better. over_slerp: a joint's rms angle over slerp's, "
-    "geometric mean over the compared joints, on which all schemes ran that ran on nine tenths of the clip's; "
-    "most_over_slerp: the largest. rms_degrees: the joints' rms angle, median; worst_degrees: the largest, of "
-    "worst_joint; largest_degrees: the largest angle of all. end_cm: rms distance of end effectors, the root's path "
-    "being the true one; omega, alpha: rms errors of angular velocity and acceleration over the rms of the truth's, of "
-    "filtered truth alone. Left out are joints that turn less than 1 degree, fingers and thumbs, and those of pops, "
-    "which turn faster than 1800 degrees a second somewhere. At quick size the middle 180 frames are taken. Controls: "
-    "euler-linear and euler-cubic interpolate Euler channels; 'tumble' is motion without noise, 'white noise' noise "
-    "without motion."
+    "Every n-th frame of a dense motion and the last one are kept, and the others are rebuilt. Clips are the files in "
+    f"the folder that QUATSPLINE_MOTIONS names; without it, the project's own clip '{OWN}', which is generated and not "
+    f"recorded. '{ALL}' pools the joints of all clips. filter: the truth is the recording itself (none) or what a "
+    "zero-phase Butterworth filter of its steps leaves. Angles are of local orientations at the frames left out, "
+    "except those within two keyframes of an end; lower is better. over_slerp: a joint's rms angle relative to "
+    "slerp's, geometric mean over the compared joints, which are those on which all schemes ran that ran on nine "
+    "tenths of the clip's joints; most_over_slerp: the largest. rms_degrees: the joints' rms angle, median; "
+    "worst_degrees: the largest, for worst_joint; largest_degrees: the largest angle of all. end_cm: rms distance of "
+    "end effectors, with the true path of the root; omega, alpha: rms errors of angular velocity and acceleration "
+    "relative to the rms of the truth's, only for filtered truth. Excluded are joints that turn less than 1 degree, "
+    "fingers and thumbs, and those in pops, which turn faster than 1800 degrees a second somewhere. At quick size the "
+    "middle 180 frames are used. Controls: euler-linear and euler-cubic interpolate Euler channels; 'tumble' is "
+    "motion without noise, 'white noise' is noise without motion."
 )
 FORMATS = {
     **dict.fromkeys(
@@ -205,8 +205,8 @@ def caption(table: pd.DataFrame) -> str:
     clips = sorted(set(table["clip"]) - {ALL, *CONTROLS})
     made = " No recorded clip was given: this is the project's own walk." if clips == [OWN] else ""
     return (
-        f"Rms angle of joints at the frames left out when every 2nd, 4th, ... frame is kept, over slerp's, geometric "
-        f"mean ({_count(clips)}): below 1 (blue) is better than slerp. Recordings as they are, low-pass filtered, "
-        f"and two controls, motion without noise and noise without motion; grey: too slow, or refused.{made} "
+        "Rms angle of joints at the frames left out when every 2nd, 4th, ... frame is kept, relative to slerp's, "
+        f"geometric mean ({_count(clips)}): below 1 (blue) is better than slerp. Recordings as they are, low-pass "
+        f"filtered, and two controls, motion without noise and noise without motion; grey: too slow, or refused.{made} "
         f"{rows.said(_sharing(table))}"
     )

@@ -25,14 +25,15 @@ KEYS = ["clip", "filter", "error_degrees", "scheme"]
 FRAMES, QUICK = 600, 240
 """Of a clip at most so many, from its middle; fewer at quick size."""
 NOTE = (
-    "Keyframes of a dense motion are taken in at the worst frame and out again where the others do without, joint by "
-    "joint, until the scheme rebuilds every frame within error_degrees. Clips and what is left out of them are those "
-    f"of the experiment reconstruct; of a clip the middle {FRAMES} frames are taken ({QUICK} at quick size). "
-    "keyframes: of all joints that did not fail; share: of their frames; per_second: keyframes of a joint a second; "
-    "over_slerp: a joint's keyframes over slerp's, geometric mean over the compared joints, on which all schemes ran; "
-    "most_over_slerp: the largest; lower is better. Greedy: fewer may do. Only schemes of this package are tried that "
-    "are cheap to set up, at quick size those of the figure, unless others are asked for. Without recorded clips "
-    f"there is '{OWN}' alone, which the project's generator made."
+    "Keyframes of a dense motion are inserted at the worst frame, and removed again where their neighbours do not "
+    "need them, joint by joint, until the scheme rebuilds every frame within error_degrees. The clips and the "
+    f"exclusions are those of the experiment reconstruct; the middle {FRAMES} frames of a clip are used ({QUICK} at "
+    "quick size). keyframes: of all joints that did not fail; share: the same relative to their frames; per_second: "
+    "keyframes per joint and second; over_slerp: a joint's number of keyframes relative to slerp's, geometric mean "
+    "over the compared joints, on which all schemes ran; most_over_slerp: the largest; lower is better. The search is "
+    "greedy: fewer may be enough. Only schemes of this package that are cheap to set up are tried (at quick size "
+    f"those of the figure), unless others are requested. Without recorded clips there is only '{OWN}', which the "
+    "project generates."
 )
 FORMATS = {
     "share": ".3f",
@@ -142,7 +143,7 @@ def caption(table: pd.DataFrame) -> str:
     clips = sorted(set(table["clip"]) - {ALL})
     made = " No recorded clip was given: this is the project's own walk." if clips == [OWN] else ""
     return (
-        "Keyframes that greedy reduction keeps of recorded motion against the error that is allowed at every frame, "
-        f"joint by joint ({_count(clips)}): their share of all frames, and their number over that of slerp, "
-        f"geometric mean over joints. Recordings as they are, and low-pass filtered.{made}"
+        "Keyframes of recorded motion that greedy reduction keeps, by the error allowed at every frame, joint by joint "
+        f"({_count(clips)}): as a share of all frames, and relative to slerp's number, geometric mean over joints. "
+        f"Recordings as they are, and low-pass filtered.{made}"
     )

@@ -1,4 +1,4 @@
-"""What stands in for slerp, and how far it is off: terms of a polynomial, steps of a recurrence, the chord."""
+"""Substitutes for slerp, and how far they are off: terms of a polynomial, steps of a recurrence, the chord."""
 
 from functools import partial
 from typing import Any
@@ -18,10 +18,11 @@ PAPER = False
 KEYS = ["scheme", "sphere_degrees", "terms", "steps"]
 NOTE = (
     "Two keyframes, sphere_degrees apart on the sphere of unit quaternions, which is a rotation by twice that angle, "
-    "step_degrees. error: the largest angle from slerp, as a rotation in rad, 8193 samples per arc in random frames; "
-    "sphere_error_degrees: the same on the sphere in degrees, so half of it; lower is better. fast-slerp by terms, "
-    "incremental-slerp by steps; growth: the power of the number of steps that its drift grows with, by regression "
-    "over all of them. closed_form: nlerp's error by its formula, which has nothing to do with the samples."
+    "step_degrees. error: the largest angle from slerp, as a rotation in rad, at 8193 samples per arc in random "
+    "frames; sphere_error_degrees: the same on the sphere in degrees, which is half of it; lower is better. "
+    "fast-slerp is tried by terms, incremental-slerp by steps; growth: the power of the number of steps with which "
+    "its drift grows, by regression over all of them. closed_form: nlerp's error by its formula, which is independent "
+    "of the samples."
 )
 FORMATS = {
     "error": ".3e",

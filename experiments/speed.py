@@ -21,13 +21,13 @@ PAPER = False
 SERIAL = True
 KEYS = ["task", "scheme"]
 NOTE = (
-    "Medians of interleaved, calibrated rounds on one thread unless the task says otherwise, compilation and warm-up "
-    "apart; keyframes are a walk of 40-degree steps. instructions are packed arithmetic ones per item, counted by "
-    "running the kernels, each for as many samples as a vector holds. nanoseconds_attainable is the larger of their "
-    "time at the rate of the row multiply-add and of the row writing, and timed_share what that is of the measured "
-    "time, in percent. times_sincos: over one numpy sine and cosine an item in the same run. Slow peers do the first "
-    "items only. "
-    "Iterative schemes solve to 1e-9. 'start' rows are seconds in new processes."
+    "Medians of interleaved, calibrated rounds on one thread unless the task says otherwise, without compilation and "
+    "warm-up; keyframes are a walk of 40-degree steps. instructions: packed arithmetic instructions per item, counted "
+    "by running the kernels, each for as many samples as a vector holds. nanoseconds_attainable: the larger of two "
+    "times, that of these instructions at the rate of the row multiply-add and that of the row writing; timed_share: "
+    "this as a percentage of the measured time. times_sincos: relative to one numpy sine and cosine per item in the "
+    "same run. Slow peers do only the first items. Iterative schemes solve to 1e-9. 'start' rows are seconds in new "
+    "processes."
 )
 FORMATS = {
     "seconds_median": ".3g",

@@ -112,7 +112,7 @@ def _twice(one: Found, other: Found) -> Found:
 
 
 def schemes() -> list[str]:
-    """Sorted names of every usable scheme, peers included where their library imports.
+    """Sorted names of all usable schemes, including those of installed libraries.
 
     Examples
     --------
@@ -129,7 +129,7 @@ def scheme(name: str) -> type[Curve]:
     Raises
     ------
     ValueError
-        An unknown name (with the nearest known one), or a scheme that cannot be used and why.
+        For an unknown name (with the nearest known one), or a scheme that cannot be used (with the reason).
 
     Examples
     --------
@@ -177,9 +177,9 @@ def build(
     align: bool = True,
     **options: Any,
 ) -> Curve:
-    """The curve of a scheme through keyframes: the scheme's class called (see `Curve`).
+    """Build the curve of a scheme through keyframes, by calling the scheme's class (see `Curve`).
 
-    Besides the scheme's own options, ``closing_sign``, ``hold`` and ``normalise`` are as there.
+    Options are those of the scheme, and ``closing_sign``, ``hold`` and ``normalise`` of `Curve`.
 
     Examples
     --------

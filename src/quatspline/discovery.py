@@ -145,7 +145,7 @@ def _from_entry(entry: importlib.metadata.EntryPoint) -> Found:
 def _loaded(entry: importlib.metadata.EntryPoint) -> type[Curve]:
     scheme = entry.load()
     if not (isinstance(scheme, type) and issubclass(scheme, Curve)):
-        raise TypeError(f"no subclass of Curve: {scheme!r}")
+        raise TypeError(f"not a subclass of Curve: {scheme!r}")
     return scheme
 
 

@@ -80,7 +80,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _interrupted(command: str, status: int) -> int:
-    hint = ": the same command goes on where it stopped" if command in ("run", "motions") else ""
+    hint = ": the same command resumes where it stopped" if command in ("run", "motions") else ""
     return _told(f"interrupted{hint}", status)
 
 

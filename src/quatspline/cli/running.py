@@ -104,7 +104,7 @@ def _write_page(results: Results, *, asked: bool) -> list[str]:
     page = results.folder / PAGE
     if not asked and not results.owns(PAGE):
         if page.exists():
-            _say(f"{page}: not of this folder's runs, so it was left as it is")
+            _say(f"{page}: not written by a run in this folder, so it was left as it is")
         return []
     from quatspline.page import write_page
 

@@ -28,6 +28,11 @@ def opened(motion: Motion) -> Motion:
     return motion
 
 
+def nearly(gap: float, median: float) -> bool:
+    """Whether a last orientation this far from the first may be meant to repeat it, by the median step (rad)."""
+    return gap < min(NEARLY, SHARE * median)
+
+
 def returning(motion: Motion) -> Motion:
     """A motion closed: n keyframes and n + 1 times.
 
@@ -44,13 +49,13 @@ def returning(motion: Motion) -> Motion:
         into, out = _tangents_round(motion)
         return replace(motion, quaternions=q[:-1], in_tangents=into, out_tangents=out)
     near = f"the last row is {np.degrees(gap):.2g} degrees from the first orientation"
-    ambiguous = gap < min(NEARLY, SHARE * _median_step(q))
+    ambiguous = nearly(gap, _median_step(q))
     if not prepare(t, q).uniform:
         raise ValueError(
             "closed: times are not uniform, so the last row must repeat the first orientation "
             f"at the time of its return{f'; {near}' if ambiguous else ''}"
         )
-    note = f"closed: {near}: taken as a keyframe of its own, the return follows one step later"
+    note = f"closed: {near}; it is kept as a keyframe, and the curve returns one step later"
     return _one_step_more(motion, note if ambiguous else "")
 
 
