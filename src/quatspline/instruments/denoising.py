@@ -1,4 +1,4 @@
-"""Denoising: dense motion, rebuilt from every so many-th of its frames, to which white noise was added.
+"""Denoising: dense motion, rebuilt from every n-th of its frames, to which white noise was added.
 
 What is held out are the frames left out, without noise: they judge every curve, whether through its keyframes or
 near them, and no parameter is chosen by them.
@@ -38,7 +38,7 @@ def denoising(
     omega: FloatArray | None = None,
     **options: Any,
 ) -> Row:
-    """Errors of a scheme through or near every so many-th noisy frame; failed joints count in ``failed_joints`` alone.
+    """Errors of a scheme through or near every n-th noisy frame; failed joints count in ``failed_joints`` alone.
 
     rms_degrees, worst_degrees: of the joints' rms angles to the truth at the frames left out the median and the
     largest; keyframes_degrees: the median of their rms angles at the keyframes themselves; told_degrees: what

@@ -1,4 +1,4 @@
-"""Reconstruction: a dense recorded motion, rebuilt from every so many-th of its frames.
+"""Reconstruction: a dense recorded motion, rebuilt from every n-th of its frames.
 
 Errors are angles between the local orientations of a joint, at the frames left out and more than two
 keyframes from either end, where a scheme has neighbours on both sides.
@@ -161,7 +161,7 @@ def by_channels(truth: Truth, kind: str, every: int) -> Rebuilt:
 
 
 def rebuild(truth: Truth, name: str, every: int, *, rates: bool = False) -> Rebuilt:
-    """The truth's tracks, rebuilt by a scheme or by Euler channels from every so many-th frame and the last.
+    """The truth's tracks, rebuilt by a scheme or by Euler channels from every n-th frame and the last.
 
     Raises
     ------
@@ -177,7 +177,7 @@ def rebuild(truth: Truth, name: str, every: int, *, rates: bool = False) -> Rebu
 
 
 def keyframes(frames: int, every: int) -> NDArray[np.intp]:
-    """The frames that are kept: every so many-th and the last."""
+    """The frames that are kept: every n-th and the last."""
     return np.unique(np.append(np.arange(0, frames, every), frames - 1))
 
 

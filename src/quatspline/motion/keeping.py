@@ -1,4 +1,4 @@
-"""What a scheme makes of every so many-th frame of a motion, measured at the frames left out."""
+"""What a scheme makes of every n-th frame of a motion, measured at the frames left out."""
 
 from __future__ import annotations
 

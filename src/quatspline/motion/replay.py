@@ -1,4 +1,4 @@
-"""What the page's player shows of a recorded motion: the truth, and what schemes make of every so many-th frame.
+"""What the page's player shows of a recorded motion: the truth, and what schemes make of every n-th frame.
 
 Figures are points in the world that lines join: joints and end sites of a skeleton, the wires of one rigid body.
 They are stored at frames of the motion as whole numbers of 16 bits, so that a clip is a small file.
@@ -76,7 +76,7 @@ def replay(
     motion : the truth
     schemes : names, the two that are shown at first leading; what one refuses, or fails on for a joint, is told
         instead
-    every : keyframes are every so many-th frame and the last, as in `Motion.curve`
+    every : keyframes are every n-th frame and the last, as in `Motion.curve`
     title, source : what a reader calls it, and where it comes from
     joints : whose errors are shown, by default of all that turn
 
