@@ -86,7 +86,9 @@ def _changed(folder: Path) -> int:
 
 def _find(places: tuple[Path, ...]) -> dict[str, Found]:
     files = [path for folder in places for path in sorted(folder.glob("[!_]*.py"))]
-    once = {path.resolve(): path for path in reversed(files)}  # the first folder that has it
+    once = {
+        os.path.realpath(path): path for path in reversed(files)
+    }  # the first folder that has it
     everything: dict[str, Found] = {}
     for item in discover(tuple(reversed(once.values()))):
         other = everything.get(item.name)

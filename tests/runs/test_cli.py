@@ -529,11 +529,11 @@ def test_a_failing_experiment_is_told_and_the_rest_run(
 
 # -- interruption -------------------------------------------------------------------------------
 
-STOP_ONCE = f"""import os
+STOP_ONCE = f"""import os, signal
     stop = not os.path.exists("second.count")
     {count("second")}
     if stop:
-        raise KeyboardInterrupt"""
+        os.kill(os.getpid(), signal.SIGINT)"""
 
 
 def interrupted(desk: Desk) -> None:

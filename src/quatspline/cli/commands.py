@@ -21,6 +21,7 @@ from quatspline.cli.arguments import REFUSED, parser
 from quatspline.cli.notes import note
 from quatspline.system.atomic import naming
 from quatspline.system.ending import Ended, ending
+from quatspline.system.sentence import one_line
 from quatspline.system.stdout import STDOUT, reserved, say
 
 if TYPE_CHECKING:
@@ -58,7 +59,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         arguments.command = ["quatspline", *given]
         with ending(partial(_interrupted, arguments.name)):
             with reserved():
-                status = COMMANDS[arguments.name](arguments)
+                status = _served(arguments)
             with naming(STDOUT):
                 sys.stdout.flush()
         return status
@@ -74,6 +75,18 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _told(str(error), REFUSED)
     except Exception as error:
         return _unforeseen(error)
+
+
+def _served(arguments: argparse.Namespace) -> int:
+    """Serve a command; a scheme that would leave the program is an error like others, and no signal."""
+    try:
+        return COMMANDS[arguments.name](arguments)
+    except (Exception, Ended):
+        raise
+    except BaseException as error:
+        from quatspline.instruments.trials import reason
+
+        return _told(f"{reason(error)}: raised by a scheme or a library", FAILED)
 
 
 def _interrupted(command: str, status: int) -> int:
@@ -118,7 +131,7 @@ def _list(arguments: argparse.Namespace) -> int:
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     say("  ".join(map(str.ljust, row, widths)).rstrip() for row in rows)
     unusable = [item for item in items if item.scheme is None]
-    say(f"{i.name.ljust(widths[0])}  n/a: {' '.join(str(i.problem).split())}" for i in unusable)
+    say(f"{i.name.ljust(widths[0])}  n/a: {one_line(str(i.problem))}" for i in unusable)
     return DONE
 
 
