@@ -195,7 +195,11 @@ def _closing(keyframes: Keyframes, angles: FloatArray, second: float) -> Iterato
     if exact or nearly(gap, median):
         off = significant(float(np.degrees(gap))) if gap > np.radians(ROUNDING) else "0"
         later = significant(float(keyframes.knots[-1]) / second)
-        row = "takes the last row for the return" if exact else "asks that its last row repeat the first"
+        row = (
+            "takes the last row for the return"
+            if exact
+            else "asks that its last row repeat the first"
+        )
         yield [
             f"the last keyframe is {off} degrees from the first, {later} s later: the motion closes. If it goes on from "
             f"there as it began, say --closed, which {row}; without it the curve has two ends there."
