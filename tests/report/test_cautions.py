@@ -130,8 +130,9 @@ def test_seconds_are_those_of_the_unit_that_was_told() -> None:
 def test_a_motion_that_ends_where_it_began_closes() -> None:
     """As a camera's loop in a CSV does: a turn, and a swing to and fro."""
     said = (
-        "Warning: the last keyframe is 0 degrees from the first, 5 s later: the motion closes. If it goes on from there "
-        "as it began, say --closed, which takes the last row for the return; without it the curve has two ends there."
+        "Warning: the last keyframe is 0 degrees from the first, 5 s later: the motion closes. If it goes on from "
+        "there as it began, say --closed, which takes the last row for the return; without it the curve has two ends "
+        "there."
     )
     assert warned(TIMES, spin(0, 90, 180, 270, 360)) == [said]
     assert warned(TIMES, spin(10, 30, 50, 30, 10)) == [said]

@@ -201,8 +201,8 @@ def _closing(keyframes: Keyframes, angles: FloatArray, second: float) -> Iterato
             else "asks that its last row repeat the first"
         )
         yield [
-            f"the last keyframe is {off} degrees from the first, {later} s later: the motion closes. If it goes on from "
-            f"there as it began, say --closed, which {row}; without it the curve has two ends there."
+            f"the last keyframe is {off} degrees from the first, {later} s later: the motion closes. If it goes on "
+            f"from there as it began, say --closed, which {row}; without it the curve has two ends there."
         ]
 
 
