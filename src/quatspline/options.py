@@ -88,6 +88,8 @@ LARGEST = 1e6
 Factor = Annotated[float, Within(LARGEST)]
 Positive = Annotated[float, Above(0.0)]
 Count = Annotated[int, AtLeast(1), AtMost(EXACT)]
+Iterations = Annotated[Count, AtMost(10_000)]
+"""Of a solver: those that converge need hundreds at most, and not every solver notices that it does not."""
 Stop = Literal["residual", "change"]
 OnFailure = Literal["raise", "return"]
 
