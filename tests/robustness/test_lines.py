@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -61,6 +62,15 @@ def test_names_in_a_file_are_listed_briefly_and_escaped(
         line.endswith(r"\x1b[31mred, c0, c1, c2, c3, c4, c5, c6 and 92 more") for line in lines
     )
     assert all(line.isprintable() for line in lines)
+
+
+def test_names_of_files_need_not_be_utf_8(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    given, out = (os.fsdecode(name) for name in (b"n\xff.csv", b"o\xff"))
+    Path(given).write_text("t,qw,qx,qy,qz,n\n" + ROWS, encoding="utf-8")
+    assert main(["compare", given, "--schemes", "slerp", "quartic", "--out", out]) == 0
+    assert (Path(out) / "report.html").is_file()
+    assert main(["sample", given, "--scheme", "slerp", "--count", "3", "-o", f"{out}.csv"]) == 0
+    assert Path(f"{out}.csv").is_file()
 
 
 @pytest.mark.parametrize("value", ["9" * 400, "x" * 5000, "1" * 5000, "\x1b[31m"])

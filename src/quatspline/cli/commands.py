@@ -21,7 +21,7 @@ from quatspline.cli.arguments import REFUSED, parser
 from quatspline.cli.notes import note
 from quatspline.system.atomic import naming
 from quatspline.system.ending import Ended, ending
-from quatspline.system.sentence import one_line
+from quatspline.system.sentence import one_line, printable
 from quatspline.system.stdout import STDOUT, reserved, say
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _told("standard output is closed: point it to a file or to /dev/null", REFUSED)
     try:
         arguments = parser().parse_args(given)
-        arguments.command = ["quatspline", *given]
+        arguments.command = ["quatspline", *map(printable, given)]  # as files and pages can hold it
         with ending(partial(_interrupted, arguments.name)):
             with reserved():
                 status = _served(arguments)
@@ -200,7 +200,7 @@ def _compare(arguments: argparse.Namespace) -> int:
     with results.writing():
         results.guard((compare if body else joints).FILES, inputs=[arguments.keyframes])
         common = {"schemes": schemes, "results": results, "call": arguments.command}
-        common |= {"name": Path(arguments.keyframes).name, "options": given}
+        common |= {"name": printable(Path(arguments.keyframes).name), "options": given}
         if not body:
             return joints.command(motion, every=arguments.keep, **common)
         common |= {"needs": needs, "told": asked.told(arguments, motion)}

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from quatspline.cli.ranking import ROWS, more
 from quatspline.engines.engine import always_compiled
+from quatspline.system.sentence import printable
 from quatspline.system.stdout import say
 
 if TYPE_CHECKING:
@@ -95,7 +96,7 @@ def command(
         sections=KEPT,
         findings=[],
     )
-    print(page, file=sys.stderr)
+    print(printable(str(page)), file=sys.stderr)
     return 0
 
 
