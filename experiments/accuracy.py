@@ -20,10 +20,11 @@ TITLE = "Accuracy on a smooth motion"
 PAPER = False
 KEYS = ["knots", "scheme", "keyframes"]
 NOTE = (
-    "Largest errors to the analytic truth, lower is better; 'inner' is the window [3, 7] of [0, 10], away from the "
-    "ends. slope, slope_omega, slope_alpha: orders of inner_angle, inner_omega, inner_alpha from the level before; "
-    "regression: over the last five levels. spacing_1deg, spacing_0.1deg, spacing_0.01deg: the spacing from which on "
-    "inner_angle stays below that, larger is better; unreached says why there is none."
+    "Largest errors relative to the analytic truth; lower is better. 'inner' is the window [3, 7] of [0, 10], away "
+    "from the ends. slope, slope_omega and slope_alpha: orders of inner_angle, inner_omega and inner_alpha relative "
+    "to the previous level; regression: over the last five levels. spacing_1deg, spacing_0.1deg, spacing_0.01deg: the "
+    "largest spacing below which inner_angle stays under that angle; larger is better. unreached says why there is "
+    "none."
 )
 FORMATS = {
     "spacing": ".3g",
@@ -39,6 +40,11 @@ BUDGET = Budget(limit=1e8, meter=calls)
 """Of a level of a library's scheme, about half a minute."""
 SAMPLED = (40, 4, 4)
 """Samples of a segment, for its forecast: with the nine orientations of each rate that a scheme does not offer."""
+
+GUIDES, NAMED = 0.1, 3.0
+"""How much lower than all curves guides are at the end, where the name takes that ratio of spacings."""
+EDGE = 1.1
+"""Ratio of limits to spacings."""
 
 
 def cells(run: Run) -> list[dict[str, Any]]:
@@ -89,14 +95,15 @@ def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
 def draw(table: pd.DataFrame) -> Figure:
     kinds = [kind for kind in KINDS if (table["knots"] == kind).any()]
     fig, panels = style.axes(style.PAGE, 3.9, 1, len(kinds), sharey=True)
-    fig.get_layout_engine().set(rect=(0.0, 0.0, named.ROOM, 1.0))
     for ax, kind in zip(panels[0], kinds, strict=True):
-        groups = table[table["knots"] == kind].sort_values("keyframes").groupby("scheme")
+        own = table[(table["knots"] == kind) & table["inner_angle"].notna()]
+        groups = own.sort_values("keyframes").groupby("scheme")
         rows = ((str(name), each["spacing"], each["inner_angle"]) for name, each in groups)
         ends = named.draw_curves(ax, rows)
-        _guides(ax, table)
+        _guides(ax, own)
         ax.set(xscale="log", yscale="log", title=f"{kind} times", xlabel="keyframe spacing (t)")
-        ax.invert_xaxis()
+        ax.set_xlim(EDGE * own["spacing"].max(), own["spacing"].min() / EDGE)
+        style.plain_log(ax.xaxis)
     panels[0, 0].set_ylabel("largest error on the inner window (rad)")
     style.letters(panels[0])
     named.name_ends(fig, {ax: ends})
@@ -106,17 +113,13 @@ def draw(table: pd.DataFrame) -> Figure:
 def _guides(ax: Any, table: pd.DataFrame) -> None:
     """Slopes 2, 3 and 4, below the curves, and the target angles, in grey."""
     far, near = table["spacing"].max(), table["spacing"].min()
-    x = np.array([np.sqrt(near * far), far])
-    least = table["inner_angle"].min()
+    x = np.array([far, np.sqrt(near * far)])
+    below = GUIDES * table.loc[table["spacing"] >= x[1] / NAMED, "inner_angle"].min()
     for order in (2, 3, 4):
-        y = least * (x / x[0]) ** order
+        y = below * (x[0] / x[1]) ** 2 * (x / x[0]) ** order
         ax.plot(x, y, color="#999999", lw=0.7, ls=":")
-        ax.annotate(
-            *(f"order {order}", (x[1], y[1]), (2, 2)),
-            textcoords="offset points",
-            fontsize=6.5,
-            color="#777777",
-        )
+        place = {"textcoords": "offset points", "va": "center", "fontsize": 6.5, "color": "#777777"}
+        ax.annotate(f"order {order}", (x[1], y[1]), (3, 0), **place)
     for degrees in TARGETS.values():
         ax.axhline(np.radians(degrees), color="#888888", lw=0.5)
         place = {"transform": ax.get_yaxis_transform(), "va": "bottom", "ha": "left"}

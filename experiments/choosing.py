@@ -1,4 +1,4 @@
-"""One row per scheme, one column a question: derived from the other tables of the folder."""
+"""One row per scheme, one column per question: derived from the other tables of the folder."""
 
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
@@ -21,15 +21,16 @@ KEYS = ["torque", "scheme"]
 NOTE = (
     "Derived from the tables claims, continuity, accuracy, locality, edge-cases, convergence, fairness and cost of "
     "this folder; missing names those that are not there. smooth_k: k of C^k at steps of 60 degrees; smooth_k_worst: "
-    "over all steps and times measured, -1 being a leap. order: of the error, uniform times, up to 321 keyframes. "
-    "spacing_0.1deg: the spacing from which on the error on a smooth motion stays below 0.1 degrees. torque: median "
-    "and worst of the energy over the minimum, committed sets. operations: exponentials and logarithms, two a slerp, "
-    "for a sample and a keyframe, iterations included; empty where a scheme counts other things. pareto: yes where "
-    "no other scheme that passes through its keys is at least as good in torque, order (whole) and both operations "
-    "and better in one; times_pareto: the same with the two timings, which libraries have, too. Timings are of "
-    "10,000 samples and 1000 keyframes, or the largest size below that was measured. worst_failure: the worst of each "
-    "cause; to be off where a scheme claims nothing is none. run_size: quick where a table was measured at that size; "
-    "decisions that hang on little are then left open, and so is smooth_k_worst of libraries."
+    "the least over all steps and times measured, where -1 is a leap. order: of the error, at uniform times and up to "
+    "321 keyframes. spacing_0.1deg: the largest spacing below which the error on a smooth motion stays under 0.1 "
+    "degrees. torque: median and worst energy relative to the minimum, on the committed sets. operations: "
+    "exponentials and logarithms per sample and per keyframe, including iterations, where a slerp counts as two; "
+    "empty where a scheme counts other things. pareto: yes if no other scheme that passes through its keyframes is at "
+    "least as good in torque, order (as a whole number) and both operations and better in one of them; times_pareto: "
+    "the same with the two timings, which libraries also have. Timings are of 10,000 samples and 1000 keyframes, or "
+    "of the largest smaller size measured. worst_failure: the worst case of each kind; a deviation where a scheme "
+    "claims nothing is not a failure. run_size: quick if a table behind the row was measured at that size; close "
+    "decisions are then left open, and smooth_k_worst of libraries is empty."
 )
 FORMATS = {
     "order": ".2f",
@@ -234,11 +235,13 @@ def draw(table: pd.DataFrame) -> Figure:
     shown = table[np.isfinite(table["torque"]) & table["nanoseconds_per_sample"].notna()]
     shown = shown.assign(excess=(shown["torque"] - 1.0).clip(lower=LEAST_EXCESS))
     points = [_drawn(ax, row) for _, row in shown.iterrows()]
-    ax.set(xscale="log", yscale="log", xlabel="nanoseconds per sample")
+    ax.set(xscale="log", yscale="log", xlabel="nanoseconds per sample", xmargin=0.1)
     ax.set_ylabel("median excess of torque energy over the minimum")
     fig.draw_without_rendering()
     fig.set_layout_engine("none")
-    direct.label_points(ax, [point for point in points if point is not None])
+    marks = zip(shown["nanoseconds_per_sample"], shown["excess"], points, strict=True)
+    unnamed = [(x, y) for x, y, point in marks if point is None]
+    direct.label_points(ax, [point for point in points if point is not None], unnamed)
     return fig
 
 

@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
-import matplotlib as mpl
 import pandas as pd
 from matplotlib.figure import Figure
 
@@ -24,8 +23,7 @@ from quatspline.claims.claim import (
 )
 from quatspline.claims.published import published, works
 from quatspline.curve import Curve
-from quatspline.figures import style
-from quatspline.figures.heat import ROW, label_cells, scheme_rows
+from quatspline.figures import matrix
 from quatspline.instruments.trials import Row
 from quatspline.runs.experiment import Run
 
@@ -33,15 +31,14 @@ TITLE = "Claims and verdicts"
 PAPER = False
 KEYS: list[str] = []
 NOTE = (
-    "source: ours (attributes of the class), peer (what the library publishes), paper (a publication, by default "
-    "that of 2017). verdict: holds, departs, not measurable with the reason in failure, or not decided at this size: "
-    "it holds in the cases of quick size, and full size has more. fault: whose a departure is, the scheme's or, of "
-    "what a publication says, the publication's. case is a line of Python "
-    "that prints the value measured: the first of the cases tried, from few keyframes to more, at which a claim "
-    "departs, otherwise the one where it holds least well. continuity holds where the measured k is at least that "
-    "claimed; order within 0.3; keyframes are met to 1e-6 rad; published rates are the curve's to 1e-6 (omega) or "
-    "1e-3 (alpha) of their size; cost is counted in exponentials and logarithms, of which half the printed ratio "
-    "will do."
+    "source: ours (attributes of the class), peer (what the library publishes) or paper (a publication, by default "
+    "that of 2017). verdict: holds, departs, not measurable (with the reason in failure), or not decided at this "
+    "size: it holds in the cases of quick size, and full size has more. fault: whether a departure is the scheme's "
+    "fault or, if a publication claims too much, the publication's. case: a line of Python that prints the value "
+    "measured. It is the first of the cases tried, from few keyframes to more, in which a claim departs; otherwise "
+    "the one in which it holds least well. continuity holds if the measured k is at least the claimed one, order "
+    "within 0.3. Keyframes must be met to 1e-6 rad; published rates must agree with the curve's to 1e-6 (omega) or "
+    "1e-3 (alpha) of their size. Cost is counted in exponentials and logarithms; half of the printed ratio is enough."
 )
 MET = 1e-6
 """Largest angle (rad) at a keyframe that counts as passing through it."""
@@ -66,7 +63,9 @@ COLORS = {
     DEPARTS: "#d55e00",
 }
 """By verdict, the gravest last; text is legible on all of them."""
-OTHERS = "other claims, of which depart"
+OTHERS = "departing of other claims"
+BREAKS = {", ": "\n", " is the": "\nis the", " of other": "\nof other"}
+"""Where the heads of columns go on in a second line."""
 
 
 def cells(run: Run) -> list[dict[str, Any]]:
@@ -184,12 +183,29 @@ def _regimes(run: Run, cls: type[Curve], in_part: bool) -> dict[str, list[Probe]
 
 SHORT = {"everywhere": "all", "interior": "inside"}
 """In the figure."""
+LEAST = 1e-9
+"""Numbers below are written as 0: they are rounding."""
+HEAD = 1.1
+"""Inches of the columns' heads."""
 
 
 # -- figure -------------------------------------------------------------------------------------
 
 
 def draw(table: pd.DataFrame) -> Figure:
+    verdicts, texts = _matrices(table)
+    heads = [_two_lines(str(name).replace(" degrees", "°")) for name in verdicts]
+    return matrix.draw(verdicts, texts, COLORS, heads=heads, head=HEAD, rotation=90.0, dark=DEPARTS)
+
+
+def _two_lines(head: str) -> str:
+    for here, broken in BREAKS.items():
+        head = head.replace(here, broken, 1)
+    return head
+
+
+def _matrices(table: pd.DataFrame) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Verdicts, and what is written on them: a row per scheme, those with fewest departures first."""
     sayings = {claim.text for name in table["scheme"].unique() for claim in published(name)}
     columns = [name for name in dict.fromkeys(table["claim"]) if name not in sayings]
     looks = table["verdict"].where(table["fault"].ne(PUBLICATION), NOT_THE_SCHEMES)
@@ -197,38 +213,22 @@ def draw(table: pd.DataFrame) -> Figure:
     named = table[table["claim"].isin(columns)]
     verdicts = named.pivot(index="scheme", columns="claim", values="looks")[columns]
     texts = named.pivot(index="scheme", columns="claim", values="measured")[columns]
+    texts = texts.map(_short, na_action="ignore")
     rest = table[~table["claim"].isin(columns)].groupby("scheme")["looks"]
     told = rest.agg(lambda found: f"{found.isin([DEPARTS, NOT_THE_SCHEMES]).sum()}/{len(found)}")
     verdicts[OTHERS] = rest.agg(lambda found: max(found, key=list(COLORS).index))
     texts[OTHERS] = told
     departs = (verdicts == DEPARTS).sum(axis=1).sort_values(kind="stable").index
-    fig, panels = style.axes(style.PAGE, ROW * len(verdicts) + 1.5)
-    _matrix(panels[0, 0], verdicts.loc[departs], texts.loc[departs])
-    return fig
-
-
-def _matrix(ax: Any, verdicts: pd.DataFrame, texts: pd.DataFrame) -> None:
-    codes = verdicts.apply(lambda column: column.map(list(COLORS).index, na_action="ignore"))
-    colors = mpl.colors.ListedColormap(list(COLORS.values()))
-    ax.imshow(codes.astype(float), cmap=colors, vmin=0, vmax=len(COLORS) - 1, aspect="auto")
-    label_cells(ax, texts.fillna("").map(_short), verdicts == DEPARTS)
-    heads = [str(name).replace(" degrees", "°") for name in verdicts]
-    heads = [
-        name.replace(", ", ",\n" if name == OTHERS else "\n", 1).replace(" is the", "\nis the")
-        for name in heads
-    ]
-    ax.set_xticks(range(verdicts.shape[1]), heads, fontsize=7, rotation=90)
-    scheme_rows(ax, list(verdicts.index))
-    ax.tick_params(length=0, top=True, labeltop=True, bottom=False, labelbottom=False)
-    ax.grid(visible=False)
+    return verdicts.loc[departs], texts.loc[departs]
 
 
 def _short(text: Any) -> str:
-    """What was measured, in a cell's width: one digit of small numbers, and where a rate is kept."""
+    """What was measured, in a cell's width: two digits, one of small numbers, and where a rate is kept."""
     told = str(text)
     if "e-" in told:
-        return f"{float(told):.0e}".replace("e-0", "e-")
-    return SHORT.get(told, told)
+        value = float(told)
+        return "0" if abs(value) < LEAST else f"{value:.0e}".replace("e-0", "e-")
+    return f"{float(told):.2g}" if "." in told else SHORT.get(told, told)
 
 
 def caption(table: pd.DataFrame) -> str:
@@ -236,9 +236,9 @@ def caption(table: pd.DataFrame) -> str:
     parts = [f"{counts.get(verdict, 0)} {verdict}" for verdict in (UNKNOWN, HOLDS, DEPARTS)]
     parts += [f"{counts[UNDECIDED]} {UNDECIDED}"] if UNDECIDED in counts else []
     return (
-        "Claims by verdict (red: departs, yellow: departs from what a publication says, which is that publication's "
-        "fault, green: holds, pale: holds as far as tried at this size, grey: not measurable) with what was measured; "
-        f"of {len(table)} in all, {', '.join(parts)}. Continuity is claimed once and tried under several step angles "
-        "and kinds of times. Rows are sorted by departures; other claims are those of publications and libraries about "
-        "one scheme (departures/all). A constant rate is kept by all segments, or inside: away from the ends."
+        f"Claims by verdict with what was measured (0 is less than {LEAST:g}); white: nothing is claimed. "
+        f"Of {len(table)} in all, {', '.join(parts)}. Continuity is claimed once and tried under several step angles "
+        "and kinds of times; -1 is a leap. Rows are sorted by departures; other claims are those of publications and "
+        "libraries about one scheme (departures/all). A constant rate is kept by all segments, or inside: away from "
+        f"the ends.{matrix.said(matrix.alike(*_matrices(table)))}"
     )

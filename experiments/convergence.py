@@ -38,16 +38,16 @@ BATCH = 100
 """Keyframes solved in one call: sets on the same times, of which every call draws its own."""
 
 NOTE = (
-    "Random walks about random axes, open; unevenness is the largest possible ratio of two knot spacings, which are "
-    f"log-uniform. At most {LIMIT} iterations to a residual of 1e-6 (min-torque: to a change). Failures: limit, the "
-    "iterations ran out; wrong, at rest where the curve misses keyframes; gave_up, the solver ended its search; "
-    "not_finite. Iterations are of the sets that converge. rate is the factor by which a late iteration reduces the "
-    "change (median of a few sets), rate_theory the spectral radius of the flat equations for the same knots: above 1 "
-    "the linear iterations diverge. jump_* are acceleration jumps at inner keyframes over the peak, for curves that "
-    "claim C2: share_jumping is the share of sets where it counts as a jump. Libraries that solve all keyframes "
-    "without a report stand here by that jump alone, of jump_sets sets. Where the keyframe updates of a cell reach "
-    "their bound, failure says over budget and sets how many were measured: a few for min-torque. One call solves sets "
-    f"of up to {BATCH} keyframes together, on the same times."
+    "Open random walks about random axes; unevenness is the largest possible ratio of two knot spacings, which are "
+    f"log-uniform. At most {LIMIT} iterations to a residual of 1e-6 (min-torque: to a change of that size). Failures: "
+    "limit, the iterations ran out; wrong, the iteration settled where the curve misses keyframes; gave_up, the "
+    "solver ended its search; not_finite. Iterations are of the sets that converge. rate is the factor by which a "
+    "late iteration reduces the change (median of a few sets); rate_theory is the spectral radius of the flat "
+    "equations for the same knots, and above 1 the linear iterations diverge. jump_*: acceleration jumps at inner "
+    "keyframes relative to the peak, for curves that claim C2; share_jumping is the share of sets in which it counts "
+    "as a jump. Libraries that solve for all keyframes without a report are listed by that jump alone, over jump_sets "
+    "sets. Where the keyframe updates of a cell reach their limit, failure says over budget, and sets says how many "
+    f"were measured: a few for min-torque. One call solves sets of up to {BATCH} keyframes together, on the same times."
 )
 FORMATS = {"seconds_median": ".2e", "jump_median": ".1e", "jump_worst": ".1e"}
 ANGLES = (1, 30, 60, 90, 120, 150, 170)
@@ -210,12 +210,13 @@ COLUMNS = 4
 
 
 class Block(NamedTuple):
-    """Panels of schemes and methods that show one share, in colours of its own."""
+    """Panels of schemes and methods that show one share, in colours of its own, and what is written on it."""
 
     groups: list[Any]
     share: str
     colours: str
     label: str
+    written: str
 
     @property
     def rows(self) -> int:
@@ -228,17 +229,27 @@ def draw(table: pd.DataFrame) -> Figure:
     shown = table[table["keyframes"] == count].fillna({"method": ""})
     shown = shown.assign(share_smooth=1.0 - shown["share_jumping"])
     told = shown.groupby("scheme")["share_converged"].transform("count") > 0
+    solving, silent = _groups(shown[told]), _groups(shown[~told])
     blocks = [
-        Block(_groups(shown[told]), "share_converged", "viridis", "share of sets solved"),
-        Block(_groups(shown[~told]), "share_smooth", "cividis", "share of sets without a jump"),
+        Block(
+            solving, "share_converged", "viridis", "share of sets solved", "median of iterations"
+        ),
+        Block(
+            *(silent, "share_smooth", "cividis", "share of sets without a jump"),
+            "worst jump of acceleration over the peak",
+        ),
     ]
     blocks = [block for block in blocks if block.groups]
     heights = [block.rows for block in blocks]
-    size = style.PAGE, 1.75 * sum(heights) + 0.6 * len(heights)
+    size = style.PAGE, 1.6 * sum(heights) + 0.8 * len(heights)
     fig = Figure(figsize=size, layout="constrained")
-    parts: Any = fig.subfigures(len(blocks), 1, height_ratios=heights, squeeze=False)
-    for part, block in zip(parts[:, 0], blocks, strict=True):
+    parts: Any = fig.subfigures(
+        len(blocks), 1, height_ratios=[h + 0.4 for h in heights], squeeze=False
+    )
+    for letter, part, block in zip("ab", parts[:, 0], blocks, strict=False):
         _block(part, block)
+        title = f"({letter}) colour: {block.label}; number: {block.written}"
+        part.suptitle(title, x=0.01, ha="left", fontsize=9)
     return fig
 
 
@@ -255,12 +266,14 @@ def _block(fig: Any, block: Block) -> None:
     for ax, ((name, method), group) in zip(panels.flat, groups, strict=False):
         image = _heat(ax, group, block.share, block.colours)
         ax.set_title(f"{name}\n{method}" if method else name, fontsize=8)
-    for ax in panels[:, 0]:
-        ax.set_ylabel("step angle (degrees)")
     for ax in panels.flat[max(len(groups) - COLUMNS, 0) : len(groups)]:  # the lowest that are drawn
         ax.tick_params(labelbottom=True)
+    used = panels[:, : min(len(groups), COLUMNS)]
+    for ax in used[-1]:
         ax.set_xlabel("unevenness")
-    fig.colorbar(image, ax=panels, label=block.label, shrink=0.9, aspect=14 * rows)
+    for ax in used[:, 0]:
+        ax.set_ylabel("step angle (degrees)")
+    fig.colorbar(image, ax=used, label=block.label, shrink=0.9, aspect=14 * rows)
 
 
 def _heat(ax: Any, group: pd.DataFrame, share: str, colours: str) -> Any:
@@ -293,8 +306,9 @@ def _power(value: float) -> str:
 def caption(table: pd.DataFrame) -> str:
     count = int(table.loc[table["keyframes"] <= COUNTS[-1], "keyframes"].max())
     return (
-        f"Share of random sets of {count} keyframes that are solved within {LIMIT} iterations, against the step angle "
-        "and the unevenness of the knots (largest possible ratio of spacings); written on it is the median of "
-        "iterations of the sets that converge. Libraries that tell of no solve stand below, under a bar of their own: "
-        "the share of sets without a jump of acceleration, with the worst jump over the peak written."
+        f"Share of random sets of {count} keyframes that are solved within {LIMIT} iterations, by step angle and by "
+        "unevenness of the knots (largest possible ratio of spacings). The number in a cell is the median of the "
+        "iterations of the sets that converge. Libraries that do not report on their solves are shown below, with "
+        "their own colour bar: the share of sets without a jump of acceleration, and as a number the worst jump "
+        "relative to the peak."
     )

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullLocator
 
 from quatspline import catalogue
 from quatspline.curve import Curve
@@ -25,16 +26,15 @@ KEYFRAMES = 100
 BYTES = 32
 """Of a quaternion."""
 NOTE = (
-    "Public calls, validation included, one thread, on a smooth motion, times 0, 1, 2, ... . set-up: the curve "
+    "Public calls, including validation, on one thread, on a smooth motion at times 0, 1, 2, ... . set-up: the curve "
     f"through size keyframes and, beyond {SPREAD}, a sample every {SPREAD} segments, so that all of a long curve is "
-    f"fitted. evaluation: orientations at size times in order, {KEYFRAMES} keyframes. one sample: a "
-    "call with a scalar time, size keyframes. seconds_* are medians and interquartile ranges of interleaved rounds, "
-    "a single call where it is slow. A call that, by smaller ones, would take over "
-    f"{BUDGET:g} s ({BUDGET_QUICK:g} s at quick size) is over budget. times_fastest is the time over the "
-    "fastest scheme's for a task and size. exps, logs, slerps are counts for one keyframe (set-up, all iterations) or "
-    "sample, none for libraries. times_memory is the peak of resident memory over the bytes of the keyframes (set-up) "
-    f"or samples (evaluation), {BYTES} each, at full size only: of 100,000 keyframes, or of a tenth or a hundredth "
-    "where more would take over a second."
+    f"fitted. evaluation: orientations at size times in order, on {KEYFRAMES} keyframes. one sample: a call with a "
+    "scalar time, on size keyframes. seconds_*: medians and interquartile ranges of interleaved rounds; a slow call "
+    f"is timed once. A call that smaller ones predict to take more than {BUDGET:g} s ({BUDGET_QUICK:g} s at quick "
+    "size) is over budget. times_fastest: the time relative to the fastest scheme for that task and size. exps, logs, "
+    "slerps: counts per keyframe (set-up, all iterations) or per sample; none for libraries. times_memory: the peak "
+    f"of resident memory relative to the bytes of the keyframes (set-up) or samples (evaluation), {BYTES} each, at "
+    "full size only: for 100,000 keyframes, or for a tenth or a hundredth of that where more would take over a second."
 )
 FORMATS = {"seconds_median": ".3e", "seconds_iqr": ".1e", "times_fastest": ".1f"}
 SETUP = (5, 100, 1000, 10_000, 100_000, 1_000_000)
@@ -149,7 +149,6 @@ def _counts(task: str, name: str) -> dict[str, float]:
 
 def draw(table: pd.DataFrame) -> Figure:
     fig, panels = style.axes(style.PAGE, 3.6, 1, 2)
-    fig.get_layout_engine().set(rect=(0.0, 0.0, named.ROOM, 1.0), wspace=0.34)
     measured = table[table["seconds_median"].notna()].sort_values("size")
     ends = {}
     for ax, task, unit in zip(panels[0], SIZES, ("keyframe", "sample"), strict=False):
@@ -161,6 +160,8 @@ def draw(table: pd.DataFrame) -> Figure:
         ends[ax] = named.draw_curves(ax, rows)
         ax.set(xscale="log", yscale="log", title=task)
         ax.set(xlabel=f"{unit}s", ylabel=f"seconds per {unit}")
+        ax.xaxis.set_major_locator(LogLocator(numticks=len(EVALUATION) + 2))
+        ax.xaxis.set_minor_locator(NullLocator())
     style.letters(panels[0])
     named.name_ends(fig, ends)
     return fig
@@ -173,6 +174,6 @@ def caption(table: pd.DataFrame) -> str:
         for task, row in winners.iterrows()
     ]
     return (
-        "Seconds per keyframe of set-up, and per sample of evaluation, against the size; less is better. "
+        "Seconds per keyframe of set-up, and per sample of evaluation, by size; less is better. "
         f"{named.SAID} Curves end where a call would be over budget. Fastest at the largest size: {'; '.join(told)}."
     )

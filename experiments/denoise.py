@@ -1,4 +1,4 @@
-"""What smoothing buys where keyframes are noisy, and where it buys nothing: on motion that is known and on clips."""
+"""What smoothing gains where keyframes are noisy, and where it gains nothing: on a known motion and on clips."""
 
 from functools import cache, partial
 from typing import Any
@@ -6,8 +6,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
-from quatspline.figures import style
+from quatspline.catalogue import called
+from quatspline.figures import direct, named, style
 from quatspline.instruments.denoising import KNOWN, denoising, disturbed
 from quatspline.instruments.reconstruction import truth
 from quatspline.instruments.summary import ALL, compared
@@ -22,17 +24,17 @@ TITLE = "Noisy keyframes, with and without smoothing"
 PAPER = False
 KEYS = ["clip", "every", "noise_degrees", "scheme"]
 NOTE = (
-    "Of dense motion every so many-th frame and the last are kept, and white rotation errors of the standard deviation "
-    "noise_degrees about each axis are added to them; the frames left out, without added noise, are what curves are "
-    "held against. 'tumble' is analytic: several draws of the noise stand for joints, and its truth is exact; clips "
-    f"are recordings (the project's own '{OWN}' where QUATSPLINE_MOTIONS names none), whose held-out frames have "
-    f"noise of their own. '{ALL}' takes the joints of all clips together. rms_degrees: a joint's rms angle, median "
-    "over joints; worst_degrees: the largest; keyframes_degrees: the same at the keyframes, which an interpolant "
-    "misses by the noise itself, sqrt(3) noise_degrees; over_slerp: a joint's rms angle over slerp's, geometric mean, "
-    "most_over_slerp: the largest; omega: rms error of the angular velocity, degrees per second, of the tumble; "
-    "told_degrees: the noise as estimated from the keyframes alone. Lower is better but for told_degrees, which should "
-    "be noise_degrees. smoothing-spline chooses its weight by itself, by cross-validation (', gcv') or for the noise "
-    "that was added (', told'), where some was."
+    "Every n-th frame of a dense motion and the last one are kept, and white rotation errors with the standard "
+    "deviation noise_degrees about each axis are added to them. Curves are compared with the frames left out, which "
+    "have no added noise. 'tumble' is analytic: several draws of the noise take the place of joints, and its truth is "
+    f"exact. Clips are recordings (the project's own '{OWN}' if QUATSPLINE_MOTIONS names none), and their frames left "
+    f"out have noise of their own. '{ALL}' pools the joints of all clips. rms_degrees: a joint's rms angle, median "
+    "over joints; worst_degrees: the largest; keyframes_degrees: the same at the keyframes, where an interpolant is "
+    "off by the noise itself, sqrt(3) noise_degrees; over_slerp: a joint's rms angle relative to slerp's, geometric "
+    "mean; most_over_slerp: the largest; omega: rms error of the angular velocity, degrees per second, of the tumble; "
+    "told_degrees: the noise as estimated from the keyframes alone. Lower is better, except for told_degrees, which "
+    "should equal noise_degrees. smoothing-spline chooses its weight by itself, by cross-validation (', gcv') or from "
+    "the noise that was added, if any (', told')."
 )
 FORMATS = {
     **dict.fromkeys(("rms_degrees", "worst_degrees", "keyframes_degrees", "told_degrees"), ".3f"),
@@ -109,14 +111,10 @@ def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
 
 # -- the figure ---------------------------------------------------------------------------------
 
-PURPLE = "#5d3a9b"
-LOOKS: dict[str, dict[str, Any]] = {
-    OURS: {"color": PURPLE, "marker": "P"},
-    f"{OURS}, gcv": {"color": PURPLE, "marker": "", "linestyle": "--"},
-    f"{OURS}, told": {"color": PURPLE, "marker": "", "linestyle": ":"},
-}
-FLOOR = 0.01
-"""No noise is drawn at this (degrees)."""
+MARKS = {f"{OURS}, gcv": ("x", "by cross-validation"), f"{OURS}, told": ("+", "told the noise")}
+"""Of other ways to choose the weight, without lines: they lie on the curve of the scheme, or show beside it."""
+NONE = 0.2
+"""Where no noise is drawn, over the least noise: apart from a curve that would need a logarithm of 0."""
 
 
 def draw(table: pd.DataFrame) -> Figure:
@@ -125,45 +123,70 @@ def draw(table: pd.DataFrame) -> Figure:
     panels = (
         (known, "rms_degrees", f"{TUMBLE}, {{n}} keyframes", "rms angle (deg)"),
         (known, "omega", f"{TUMBLE}, {{n}} keyframes", "rms velocity error (deg/s)"),
-        (recorded, "over_slerp", "all clips, one frame in {every} kept", "rms angle over slerp's"),
+        (recorded, "over_slerp", "clips, 1 frame in {every} kept", "rms angle over slerp's"),
     )
     for ax, (rows, column, title, label) in zip(axes[0], panels, strict=True):
         dense = rows[rows["every"] == rows["every"].min()] if len(rows) else rows
-        _lines(ax, dense, column)
+        ends = _lines(ax, dense, column)
         counts = dense["keyframes"].dropna()
         facts = {"n": int(counts.max()) if len(counts) else 0, "every": dense["every"].min()}
         ax.set(title=title.format(**facts), xlabel="noise about each axis (deg)", ylabel=label)
-        ax.set_xscale("symlog", linthresh=FLOOR)
-        ax.set_xlim(left=0.0)
+        _noises(ax, sorted(table["noise_degrees"].unique()))
     for ax in axes[0, :2]:
         ax.set_yscale("log")
     axes[0, 2].axhline(1.0, color="#8a8a8a", linewidth=0.6)
     style.letters(axes[0])
-    style.legend_of(fig, axes[0, 0], 4)
+    fig.legend(handles=_key(), loc="outside lower center", ncols=2)
+    named.name_ends(fig, {axes[0, 2]: ends})
     return fig
 
 
-def _lines(ax: Any, rows: pd.DataFrame, column: str) -> None:
+def _noises(ax: Any, sigmas: list[float]) -> None:
+    """A logarithmic axis, with a place for no noise left of a line."""
+    ax.set_xscale("log")
+    least = min(sigma for sigma in sigmas if sigma > 0.0)
+    shown = [sigma for sigma in sigmas if sigma > 0.0]
+    ax.set_xticks([NONE * least, *shown], ["0", *(f"{sigma:g}" for sigma in shown)])
+    ax.minorticks_off()
+    ax.axvline(np.sqrt(NONE) * least, color="#8a8a8a", lw=0.6, ls=(0, (2, 2)))
+
+
+def _lines(ax: Any, rows: pd.DataFrame, column: str) -> dict[str, direct.End]:
+    """Draw a curve per scheme, without noise a mark apart from it; where curves end."""
+    ends = {}
+    least = rows.loc[rows["noise_degrees"] > 0.0, "noise_degrees"].min()
     for name in dict.fromkeys(rows["scheme"]):
         own = rows[(rows["scheme"] == name) & rows[column].notna()].sort_values("noise_degrees")
-        ax.plot(own["noise_degrees"], own[column], label=name, **_look(name))
+        still, noisy = own[own["noise_degrees"] == 0.0], own[own["noise_degrees"] > 0.0]
+        look = _look(name)
+        ax.plot(noisy["noise_degrees"], noisy[column], **look)
+        ax.plot([NONE * least] * len(still), still[column], **look)
+        if len(noisy) and name not in MARKS:
+            tip = (noisy["noise_degrees"].iloc[-1], noisy[column].iloc[-1])
+            ends[name] = direct.End(*tip, called(name), look["color"], look["linestyle"])
+    return ends
 
 
 def _look(name: str) -> dict[str, Any]:
-    return {
-        "markerfacecolor": "none",
-        "linestyle": "-",
-        **LOOKS.get(name, style.scheme_style(name)),
-    }
+    look = style.scheme_style(name.split(",")[0])
+    if name not in MARKS:
+        return look
+    return {"color": look["color"], "marker": MARKS[name][0], "linestyle": "", "ms": 6.0}
+
+
+def _key() -> list[Line2D]:
+    return [
+        Line2D([], [], label=f"{OURS} {way}", **_look(name)) for name, (_, way) in MARKS.items()
+    ]
 
 
 def caption(table: pd.DataFrame) -> str:
     clips = sorted(set(table["clip"]) - {ALL, TUMBLE})
     made = " No recorded clip was given: this is the project's own walk." if clips == [OWN] else ""
     return (
-        "Errors to the truth at frames left out against the white noise added to the keyframes: (a) of orientation "
-        "and (b) of angular velocity on a known motion, (c) of orientation on recordings as multiples of slerp's, "
-        f"geometric mean over joints ({len(clips)} clips). Interpolants pass the noise on; the smoothing spline "
-        "chooses by itself, by cross-validation (dashed) or for the noise as it is (dotted) how near to keep to its "
-        f"keyframes.{made}"
+        "Errors at the frames left out, by the white noise added to the keyframes: (a) of the orientation and (b) of "
+        "the angular velocity on a known motion, (c) of the orientation on recordings as multiples of slerp's error, "
+        f"geometric mean over joints ({len(clips)} clip{'' if len(clips) == 1 else 's'}). Left of the dashed line no "
+        "noise is added. Interpolants pass the noise on. The smoothing spline chooses how close to keep to its "
+        f"keyframes: by default (curve), by cross-validation (x) or given the noise (+).{made}"
     )

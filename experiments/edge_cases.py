@@ -2,14 +2,12 @@
 
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
 from quatspline.catalogue import found, version
-from quatspline.figures import style
-from quatspline.figures.heat import ROW, label_cells, scheme_rows
+from quatspline.figures import matrix
 from quatspline.instruments.edge_cases import edge_result
 from quatspline.instruments.trials import TIGHT, Row
 from quatspline.runs.experiment import Run, crossed
@@ -19,12 +17,12 @@ TITLE = "Edge cases"
 PAPER = False
 KEYS = ["case", "scheme"]
 NOTE = (
-    "result: exact (to 1e-6 of the largest step), as claimed (off only where the scheme claims nothing), wrong, NaN, "
-    "or error with its reason. checked: by claimed_constant_rate, against the truth, the constant rate or rest that "
-    "keyframes suggest, everywhere or away from the ends, or that keys are met; of all, that values are finite and of "
-    "norm 1, and that no curve is off by half a step. deviation: the largest angle, of a wrong one where it is at "
-    "fault, lower is better; relative: over the largest step. Iterative schemes are solved to 1e-11. Both "
-    "sizes are one."
+    "result: exact (to 1e-6 of the largest step), as claimed (deviates only where the scheme claims nothing), wrong, "
+    "NaN, or error with its reason. checked: depending on claimed_constant_rate, the curve is compared with the true "
+    "motion at a constant rate or at rest that the keyframes imply, everywhere or away from the ends, or only the "
+    "keyframes must be met. All values must be finite and of norm 1, and no curve may be off by half a step. "
+    "deviation: the largest angle (for a wrong result, the largest at fault); lower is better. relative: the same "
+    "relative to the largest step. Iterative schemes are solved to 1e-11. Both sizes are the same."
 )
 FORMATS = {"deviation": ".1e", "relative": ".1e"}
 RESULTS = {
@@ -55,32 +53,21 @@ def measure_cell(run: Run, scheme: str) -> list[Row]:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    results = table.pivot(index="scheme", columns="case", values="result")
-    results = results[list(edge_cases())]
-    rank = (results == "exact").sum(axis=1) + (results == "as claimed").sum(axis=1)
-    results = results.loc[rank.sort_values(ascending=False, kind="stable").index]
-    fig, panels = style.axes(style.PAGE, ROW * len(results) + 1.2)
-    ax = panels[0, 0]
-    codes = results.apply(lambda column: column.map(list(RESULTS).index))
-    ax.imshow(
-        codes,
-        cmap=mpl.colors.ListedColormap(list(RESULTS.values())),
-        vmin=0,
-        vmax=len(RESULTS) - 1,
-        aspect="auto",
-    )
+    results, texts = _matrices(table)
+    heads = ["\n".join(str(name).split()) for name in results]
+    return matrix.draw(results, texts, RESULTS, heads=heads, head=0.5, dark="NaN")
+
+
+def _matrices(table: pd.DataFrame) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Results, and what is written on them: a row per scheme, those with fewest faults first."""
+    cases = list(edge_cases())
+    results = table.pivot(index="scheme", columns="case", values="result")[cases]
+    faultless = results.isin(["exact", "as claimed"]).sum(axis=1)
+    results = results.loc[faultless.sort_values(ascending=False, kind="stable").index]
     relative = table.pivot(index="scheme", columns="case", values="relative")
-    relative = relative.loc[results.index, results.columns]
+    relative = relative.loc[results.index, cases]
     texts = results.where(~results.isin(["wrong", "as claimed"]), relative.map(_short))
-    texts = texts.where(results != "exact", "")
-    label_cells(ax, texts, results == "NaN")
-    ax.set_xticks(
-        range(results.shape[1]), [_two_lines(str(name)) for name in results], fontsize=6.5
-    )
-    scheme_rows(ax, list(results.index))
-    ax.tick_params(length=0, top=True, labeltop=True, bottom=False, labelbottom=False)
-    ax.grid(visible=False)
-    return fig
+    return results, texts.where(results != "exact", "")
 
 
 def _short(relative: float) -> str:
@@ -91,14 +78,10 @@ def _short(relative: float) -> str:
     )
 
 
-def _two_lines(name: str) -> str:
-    return "\n".join(name.split())
-
-
 def caption(table: pd.DataFrame) -> str:
     return (
-        "What each scheme makes of edge cases. Pale and empty: exact. Numbers: how far off, over the largest step, "
-        "where the result is wrong (yellow) or off only where nothing is claimed (green); 'error': refused or failed, "
-        "with the reason in the table. A scheme without a closed curve refuses the full turn, one of uniform times "
-        "refuses others. Rows are sorted by the number of cases without a fault."
+        "How each scheme handles edge cases. Numbers: how far off the result is, relative to the largest step, where "
+        "it is wrong or off only where nothing is claimed; 'error': refused or failed, with the reason in the table. "
+        "A scheme without a closed curve refuses the full turn; a scheme for uniform times refuses others. Rows are "
+        f"sorted by the number of cases without a fault.{matrix.said(matrix.alike(*_matrices(table)))}"
     )

@@ -8,8 +8,10 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from quatspline.catalogue import version
+from quatspline.figures import rows as scheme_rows
 from quatspline.figures import style
-from quatspline.figures.heat import ROW, scheme_rows
+from quatspline.figures.heat import ROW
+from quatspline.figures.named import NAMED, said
 from quatspline.instruments.excursion import excursion
 from quatspline.instruments.trials import Row, attempted, builder
 from quatspline.quaternion import FloatArray
@@ -21,15 +23,15 @@ TITLE = "Excursion: overshoot, and wandering during holds"
 PAPER = False
 KEYS = ["data", "scheme"]
 NOTE = (
-    "How far a curve leaves the arc from one keyframe to the next, of every segment that moves, as a share of its "
-    "step: off, the largest distance to the arc; over, the largest way beyond either end along its great circle; "
-    "back, the largest fall from the farthest progress so far; each with the median, the 95 % quantile and the worst "
-    "of all segments. overshot: the share of segments with over above 1 % of the step; over_degrees: the worst over "
-    "as an angle. wander: the largest angle from the keyframe during a hold, in degrees of rotation, a full turn "
-    "being 360. Less is better; off cannot be 0 where a curve of continuous velocity turns a corner. Seeded open "
-    "sets: 'generic', those of the table fairness; 'hold 1 : 1' and '10 : 1', 90 degree moves about random axes "
-    "beside a hold that lasts as long as one of them or ten times as long; 'one axis', back and forth. Iterative "
-    "schemes are solved to 1e-11."
+    "How far a curve leaves the arc from one keyframe to the next, for every segment that moves, as a share of its "
+    "step. off: the largest distance from the arc; over: the furthest overshoot beyond either end, along its great "
+    "circle; back: the largest retreat from the furthest progress so far; each with the median, the 95 % quantile and "
+    "the worst of all segments. overshot: the share of segments in which over exceeds 1 % of the step; over_degrees: "
+    "the worst over as an angle. wander: the largest angle from the keyframe during a hold, in degrees of rotation, "
+    "where a full turn is 360. Less is better; off cannot be 0 where a curve of continuous velocity turns a corner. "
+    "Seeded open sets: 'generic', those of the table fairness; 'hold 1 : 1' and 'hold 10 : 1', 90 degree moves about "
+    "random axes beside a hold that lasts as long as one of them or ten times as long; 'one axis', back and forth. "
+    "Iterative schemes are solved to 1e-11."
 )
 SHARES, LEVELS = ("off", "over", "back"), {"median": 0.5, "q95": 0.95, "worst": 1.0}
 FORMATS = {
@@ -107,65 +109,67 @@ def _summary(rows: pd.DataFrame) -> Row:
 
 # -- the figure -----------------------------------------------------------------------------------
 
-COLOURED = (
-    *(
-        "slerp",
-        "squad",
-        "nielson",
-        "kim",
-        "quartic",
-        "quintic",
-        "local-quintic",
-        "monotone-quintic",
-    ),
-)
-"""Schemes that the figure names by colour: eight at most can be told apart."""
-GREY = "#b5b5b5"
+COLOURED = (*NAMED[:-1], "monotone-quintic")
+"""Instead of a library the scheme that is made not to overshoot."""
 LEAST = 1e-3
 """Of a step: overshoots below it are drawn there."""
+HOLD = "hold 10 : 1"
+PANELS = {
+    HOLD: ("during a hold", "wander (degrees)", "wander_median", "wander_worst"),
+    AXIS: ("about one axis", "overshoot / step", "over_q95", "over_worst"),
+    GENERIC: ("generic sets", "overshoot / step", "over_q95", "over_worst"),
+}
+"""Title, axis, and the columns between which a bar is drawn."""
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    measured = table[table["segments"] > 0]
-    hold, axis, generic = (
-        measured[measured["data"] == data].set_index("scheme")
-        for data in (*list(HOLDS)[1:], AXIS, GENERIC)
-    )
-    names = list(hold["wander_median"].sort_values(kind="stable").index)
-    names += sorted(set(axis.index) - set(names))
+    ends, sharing = _ends(table), _sharing(table)
+    order = ends[HOLD]["wander_median"].reindex(list(sharing)).round(3)
+    names = list(order.sort_values(kind="stable", na_position="last").index)
     fig, panels = style.axes(style.PAGE, ROW * len(names) + 1.0, 1, 3, sharey=True)
-    _ranges(panels[0, 0], hold, names, ("wander_median", "wander_worst"), least=0.0)
-    _ranges(panels[0, 1], axis, names, ("over_q95", "over_worst"))
-    _ranges(panels[0, 2], generic, names, ("over_q95", "over_worst"))
-    panels[0, 0].set(title="during a hold", xlabel="wander (degrees)", xticks=range(0, 361, 90))
-    for ax, title in zip(panels[0, 1:], ("about one axis", "generic sets"), strict=True):
-        ax.set(title=title, xlabel="overshoot / step", xscale="log", xlim=(0.8 * LEAST, None))
-    scheme_rows(panels[0, 0], names)
-    for label in panels[0, 0].get_yticklabels():
-        label.set_color("black" if label.get_text() in COLOURED else "#777777")
+    for ax, (data, (title, label, *_)) in zip(panels[0], PANELS.items(), strict=True):
+        _ranges(ax, ends[data], names)
+        ax.set(title=title, xlabel=label)
+    panels[0, 0].set(xticks=range(0, 361, 90), xlim=(-10.0, None))
+    for ax in panels[0, 1:]:
+        ax.set(xscale="log", xlim=(0.8 * LEAST, None))
+    scheme_rows.label(panels[0, 0], names, sharing, COLOURED)
     style.letters(panels[0])
     return fig
 
 
-def _ranges(
-    ax: Any, rows: pd.DataFrame, names: list[str], columns: tuple[str, str], least: float = LEAST
-) -> None:
-    """A bar from one column to the other, a marker at the first; what is less than the least stands there."""
-    rows = rows.reindex(names)
-    low, high = (rows[column].clip(lower=least) for column in columns)
+def _ends(table: pd.DataFrame) -> dict[str, pd.DataFrame]:
+    """By the data: where bars begin and end, as drawn."""
+    measured = table[table["segments"] > 0]
+    return {
+        data: measured[measured["data"] == data]
+        .set_index("scheme")[columns]
+        .clip(lower=0.0 if data == HOLD else LEAST)
+        for data, (_, _, *columns) in PANELS.items()
+    }
+
+
+def _sharing(table: pd.DataFrame) -> dict[str, list[str]]:
+    ends = _ends(table)
+    drawn = {data: x if data == HOLD else x.transform(np.log10) for data, x in ends.items()}
+    return scheme_rows.shared(pd.concat(drawn, axis=1))
+
+
+def _ranges(ax: Any, ends: pd.DataFrame, names: list[str]) -> None:
+    """A bar from a mark at one column to the other."""
+    low, high = (ends[column].reindex(names) for column in ends)
     for y, name in enumerate(names):
-        looks = style.scheme_style(name)
-        colour = looks["color"] if name in COLOURED else GREY
-        ax.hlines(y, low.iloc[y], high.iloc[y], color=colour, lw=1.6)
-        ax.plot(low.iloc[y], y, **looks | {"color": colour, "linestyle": ""}, ms=4)
-        ax.plot(high.iloc[y], y, color=colour, marker="|", ms=6)
+        colour = scheme_rows.look(name, COLOURED)["color"]
+        ax.plot([low[name], high[name]], [y, y], color=colour, lw=1.6, solid_capstyle="butt")
+    scheme_rows.mark(ax, low, names, COLOURED)
 
 
 def caption(table: pd.DataFrame) -> str:
     sets = int(table["sets"].max())
     return (
         f"What curves do between keyframes that slerp does not, on {sets} seeded keyframe sets of each kind. (a) Angle "
-        "from the keyframe during a hold beside moves a tenth as long: median (marker) to worst. (b) Overshoot of "
-        "steps about one axis, as a share of the step: 95 % quantile to worst. (c) The same of generic sets. What is "
-        f"below {LEAST:g} is drawn there. Rows are sorted by (a), those without a curve there last; eight are coloured."
+        "from the keyframe during a hold that is ten times as long as the moves beside it: median (mark) to worst "
+        "(end of the bar). (b) Overshoot of steps about one axis, as a share of the step: 95 % quantile to worst. (c) "
+        f"The same for generic sets. Values below {LEAST:g} are drawn there. Rows are sorted by (a), those without a "
+        f"value there last. {said(COLOURED)} {scheme_rows.said(_sharing(table))}"
     )

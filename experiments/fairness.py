@@ -9,8 +9,10 @@ from matplotlib.figure import Figure
 
 from quatspline.catalogue import version
 from quatspline.curve import Curve
+from quatspline.figures import rows as scheme_rows
 from quatspline.figures import style
-from quatspline.figures.heat import ROW, log_heat, scheme_rows
+from quatspline.figures.heat import ROW, log_heat
+from quatspline.figures.named import SAID
 from quatspline.instruments.continuity import jumps, measured_continuity
 from quatspline.instruments.curvature import Bending, curvature_energy
 from quatspline.instruments.fairness import fairness
@@ -25,17 +27,17 @@ TITLE = "Fairness: torque energy over the minimum"
 PAPER = False
 KEYS = ["data", "scheme"]
 NOTE = (
-    "Ratios to min-torque on the same keyframes (its energy is an upper bound of the true minimum); lower is "
-    "fairer. least to worst: the integral of |alpha|^2; jerk: that of |alpha'|^2; length: of |omega|; peak: the "
-    "largest |alpha|. Seeded sets of 4 to 9 keyframes, spacings uniform in [0.5, 1.5], open: 'committed' has a step "
-    "of 20 to 110 degrees a set, the others one step angle. Quadrature is refined inside segments until two levels "
-    "agree to 1e-7; |alpha| is read on both sides of every keyframe, too. On every set velocity is searched for "
-    "jumps, at keyframes and inside segments: where it jumps, or the curve leaps, the energy of that set is infinite, "
-    "and jumping says on how many; worst_finite is the worst of the others. Iterative schemes are solved to 1e-9. "
-    "curvature_median: the median over curvature_sets sets of the path's curvature energy, the integral of kappa^2 by "
-    "arc length on S^3, over the least of all paths through the keyframes that are no longer than min-torque's, by "
-    "refinement of chains of arcs until two levels agree to 1e-4; infinite on curvature_infinite of them; "
-    "curvature_reason is the first reason."
+    "Ratios to min-torque on the same keyframes (its energy is an upper bound on the true minimum); lower is fairer. "
+    "least to worst: the integral of |alpha|^2; jerk: that of |alpha'|^2; length: that of |omega|; peak: the largest "
+    "|alpha|. Seeded open sets of 4 to 9 keyframes with spacings uniform in [0.5, 1.5]: each set of 'committed' has "
+    "one step angle between 20 and 110 degrees; the others have the step angle named. Quadrature is refined inside "
+    "segments until two levels agree to 1e-7; |alpha| is also read on both sides of every keyframe. Every set is "
+    "searched for velocity jumps, at keyframes and inside segments. Where the velocity jumps or the curve leaps, the "
+    "energy of the set is infinite; jumping counts these sets, and worst_finite is the worst of the others. Iterative "
+    "schemes are solved to 1e-9. curvature_median: the median over curvature_sets sets of the path's curvature "
+    "energy, the integral of kappa^2 by arc length on S^3, relative to the least of all paths through the keyframes "
+    "that are no longer than min-torque's, found by refining chains of arcs until two levels agree to 1e-4. It is "
+    "infinite on curvature_infinite of the sets; curvature_reason is the first reason."
 )
 FORMATS = {
     "least": ".6f",
@@ -163,40 +165,57 @@ def _quantile(values: pd.Series, level: float) -> float:
     return float(above if np.isinf(above) else below + share * (above - below))
 
 
+LEAST = 1e-6
+"""Excesses below are drawn there."""
+EXCESS = "torque energy over the least, minus 1"
+
+
 def draw(table: pd.DataFrame) -> Figure:
-    finite = table[np.isfinite(table["median"])]
-    committed = finite[finite["data"] == COMMITTED].set_index("scheme")["median"].sort_values()
-    names = [*committed.index, *sorted(set(finite["scheme"]) - set(committed.index))]
+    finite, sharing = table[np.isfinite(table["median"])], _sharing(table)
+    own = finite[finite["scheme"].isin(list(sharing))]
+    committed = own[own["data"] == COMMITTED].set_index("scheme")["median"].sort_values()
+    names = [*committed.index, *sorted(set(own["scheme"]) - set(committed.index))]
     fig, panels = style.axes(
         style.PAGE, ROW * len(names) + 1.2, 1, 2, gridspec_kw={"width_ratios": (1, 1.35)}
     )
     _excess(panels[0, 0], finite[finite["data"] == COMMITTED], names)
-    steps = finite[finite["data"] != COMMITTED]
-    steps = steps.assign(angle=steps["data"].str.split().str[0].astype(int))
-    shown = (steps.pivot(index="scheme", columns="angle", values="median") - 1.0).reindex(names)
-    label = "median torque energy over the minimum, minus 1"
-    log_heat(panels[0, 1], shown.clip(lower=LIMITS[0]), label, LIMITS, names_shown=False)
+    scheme_rows.label(panels[0, 0], names, sharing)
+    shown = _by_angle(finite).reindex(names)
+    log_heat(panels[0, 1], shown, f"median {EXCESS}", LIMITS, names_shown=False)
     panels[0, 1].set(title="by step angle", xlabel="step angle (degrees)")
     style.letters(panels[0])
     return fig
 
 
+def _by_angle(finite: pd.DataFrame) -> pd.DataFrame:
+    steps = finite[finite["data"] != COMMITTED]
+    steps = steps.assign(angle=steps["data"].str.split().str[0].astype(int))
+    excess = steps.pivot(index="scheme", columns="angle", values="median") - 1.0
+    return excess.clip(lower=LIMITS[0])
+
+
+def _sharing(table: pd.DataFrame) -> dict[str, list[str]]:
+    finite = table[np.isfinite(table["median"])]
+    committed = finite[finite["data"] == COMMITTED].set_index("scheme")
+    excess = (committed[["least", "median", "worst"]] - 1.0).clip(lower=LEAST)
+    drawn = excess.join(_by_angle(finite).clip(*LIMITS), how="outer").transform(np.log10)
+    return scheme_rows.shared(drawn)
+
+
 def _excess(ax: Any, rows: pd.DataFrame, names: list[str]) -> None:
     """Median and range of the excess on the committed sets, in the order of the names."""
     rows = rows.set_index("scheme").reindex(names)
-    y = np.arange(len(names))
-    excess = {key: (rows[key] - 1.0).clip(lower=1e-6) for key in ("least", "median", "worst")}
-    ax.hlines(y, excess["least"], excess["worst"], color="#bbbbbb", lw=2)
-    for x, height, name in zip(excess["median"], y, names, strict=True):
-        ax.plot(x, height, **style.scheme_style(name) | {"linestyle": ""}, ms=4.5)
-    ax.set(xscale="log", xlabel="excess of torque energy", title="committed sets")
-    scheme_rows(ax, names)
+    excess = {key: (rows[key] - 1.0).clip(lower=LEAST) for key in ("least", "median", "worst")}
+    ax.hlines(np.arange(len(names)), excess["least"], excess["worst"], color="#bbbbbb", lw=2)
+    scheme_rows.mark(ax, excess["median"], names)
+    ax.set(xscale="log", xlabel=EXCESS, title="committed sets")
 
 
 def caption(table: pd.DataFrame) -> str:
     sets = int(table.loc[table["data"] == COMMITTED, "sets"].max())
     return (
-        f"(a) Excess of the torque energy over the minimum on {sets} committed keyframe sets: median (marker), range "
-        "(bar); below 1e-6 drawn there; lower is fairer. (b) Its median on sets of one step angle; grey: the "
-        "scheme does not apply, or its energy is infinite. Schemes whose velocity jumps everywhere are left out."
+        f"(a) Excess of the torque energy over the least on {sets} committed keyframe sets: median (mark) and range "
+        f"(bar). Values below {LEAST:g} are drawn there; lower is fairer. (b) Its median on sets of one step angle; "
+        "grey: the scheme does not apply, or its energy is infinite. Schemes whose velocity jumps everywhere are left "
+        f"out. {SAID} {scheme_rows.said(_sharing(table))}"
     )

@@ -23,6 +23,6 @@ def draw(table: pd.DataFrame) -> Figure:
 
 def caption(table: pd.DataFrame) -> str:
     return (
-        "Blending functions B_0 to B_3 of the quartic on one segment of uniform knots, read off the "
-        "curve: ln q(t) of keyframes about one axis of which a single one is turned."
+        "Blending functions B_0 to B_3 of the quartic on one segment of uniform knots, read off the curve as ln q(t) "
+        "for keyframes about one axis of which a single one is turned."
     )

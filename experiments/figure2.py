@@ -23,6 +23,6 @@ def draw(table: pd.DataFrame) -> Figure:
 
 def caption(table: pd.DataFrame) -> str:
     return (
-        "Cumulative blending functions (sums of B_j from j to 3) of the quartic on one segment of uniform "
-        "knots, read off the curve: ln q(t) of keyframes about one axis that turn once, by one step."
+        "Cumulative blending functions (sums of B_j from j to 3) of the quartic on one segment of uniform knots, read "
+        "off the curve as ln q(t) for keyframes about one axis that turn once, by one step."
     )

@@ -7,7 +7,8 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from quatspline.catalogue import scheme
-from quatspline.figures import style
+from quatspline.figures import named, style
+from quatspline.figures.direct import End
 from quatspline.quaternion import FloatArray
 from quatspline.runs.experiment import Run
 from quatspline.trajectories.paper import CASES, RECONSTRUCTED, SOLVE, PaperCase, steps
@@ -17,8 +18,8 @@ TITLE = "Iterations of random keyframes against the step angle"
 PAPER = True
 KEYS = ["data", "scheme", "method", "step_degrees"]
 NOTE = (
-    "Random walks of 5 keyframes (open) and random loops of 6 (closed), every step about a random axis; "
-    f"solved to a relative change of 1e-6. {RECONSTRUCTED} Their rows give their largest step."
+    "Random walks of 5 keyframes (open) and random loops of 6 (closed), with every step about a random axis, "
+    f"solved to a relative change of 1e-6. {RECONSTRUCTED} The rows of the reconstructed cases give their largest step."
 )
 SOLVERS = (
     ("nielson", "jacobi"),
@@ -26,6 +27,7 @@ SOLVERS = (
     ("kim", "fixed-point"),
     ("kim", "newton"),
 )
+TICKS = (2, 4, 8, 16, 40, 100, 400, 1000)
 QUANTILES = {
     "least": 0.0,
     "q05": 0.05,
@@ -86,39 +88,44 @@ def _solved(
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    fig, panels = style.axes(style.PAGE, 3.1, 1, 2, sharey=True)
+    fig, panels = style.axes(style.PAGE, 2.9, 1, 2, sharey=True)
     for ax, data, case, mark in zip(
         panels[0], ("open, 5 keyframes", "closed, 6 keyframes"), CASES, (16, 40), strict=True
     ):
-        for (name, method), color in zip(SOLVERS, style.PALETTE, strict=False):
-            picked = table[(table.data == data) & (table.scheme == name) & (table.method == method)]
-            label = f"{name} ({method})"
-            ax.plot(picked["step_degrees"], picked["median"], color=color, label=label)
-            band = (picked["q05"], picked["q95"])
-            ax.fill_between(picked["step_degrees"], *band, color=color, alpha=0.15, lw=0)
+        ends = _solvers(ax, table[table.data == data])
         own = table[(table.data == f"{case} (reconstructed)") & (table.method == "jacobi")]
-        ax.axhline(mark, color="black", lw=0.7, ls=":")
-        ax.annotate(
-            f"the paper's {mark}", (10, mark), (0, 2), textcoords="offset points", fontsize=7.5
-        )
-        ax.plot(
-            own["step_degrees"], own["median"], "k*", ms=8, label="the reconstructed case (jacobi)"
-        )
+        ax.axhline(mark, color="black", lw=0.7, ls=":", label="the paper's count")
+        star = {"ls": "", "marker": "*", "color": "black", "ms": 8}
+        ax.plot(own["step_degrees"], own["median"], label="reconstructed case (jacobi)", **star)
         ax.set(title=data, xlabel="step angle (degrees)", yscale="log")
-        ax.set_yticks(
-            [2, 4, 8, 16, 40, 100, 400, 1000], ["2", "4", "8", "16", "40", "100", "400", "1000"]
-        )
+        ax.set_xticks(range(0, 181, 30))
+        ax.set_yticks(TICKS, [str(tick) for tick in TICKS])
         ax.minorticks_off()
     panels[0, 0].set_ylabel("iterations to a change of 1e-6")
+    panels[0, 0].legend(loc="upper left")
     style.letters(panels[0])
-    style.legend_of(fig, panels[0, 0], 3)
+    named.name_ends(fig, {ax: ends})
     return fig
+
+
+def _solvers(ax: Any, rows: pd.DataFrame) -> dict[str, End]:
+    """Draw medians and bands; the ends of the medians, by what is written there."""
+    ends = {}
+    for (name, method), color in zip(SOLVERS, style.PALETTE, strict=False):
+        picked = rows[(rows.scheme == name) & (rows.method == method) & rows["median"].notna()]
+        ax.plot(picked["step_degrees"], picked["median"], color=color)
+        band = (picked["q05"], picked["q95"])
+        ax.fill_between(picked["step_degrees"], *band, color=color, alpha=0.15, lw=0)
+        if len(picked):
+            at = picked["step_degrees"].iloc[-1], picked["median"].iloc[-1]
+            ends[f"{name} {method}"] = End(*at, f"{name} ({method})", color)
+    return ends
 
 
 def caption(table: pd.DataFrame) -> str:
     sets = int(table.sets.max())
     return (
-        f"Iterations of {sets} random keyframe sets a step angle: median (line) and the 5 % to 95 % band of "
+        f"Iterations on {sets} random keyframe sets per step angle: median (line) and the 5 % to 95 % band of "
         "the sets that converge. The paper's counts, 16 and 40, are dotted; stars are the reconstructed "
         f"cases at their largest step. {RECONSTRUCTED}"
     )

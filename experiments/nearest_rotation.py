@@ -1,4 +1,4 @@
-"""The nearest rotation that every sample of moving frames asks for: three ways to it."""
+"""The nearest rotation that every sample of moving frames requires: three ways to find it."""
 
 from typing import Any
 
@@ -14,12 +14,12 @@ PAPER = False
 SERIAL = True
 KEYS = ["data", "step_degrees", "method"]
 NOTE = (
-    "Matrices to which the nearest rotation is sought: frames of cubic splines through walks of 9 keyframes, between "
-    "keyframes and seen from the middle of their arc ('frames', by the step), and rotations by up to a radian with "
-    "noise of 0.3 in every entry ('noise'). systems: linear systems that the iteration solves for a matrix, each of "
-    "order three or of order two. error: largest angle to the stationary rotation, in rad. Seconds are of one matrix, "
-    "timed in turn on one thread, compiled, against numpy's singular values of all matrices in one call; lower is "
-    "better."
+    "The nearest rotation is found for two kinds of matrices: frames of cubic splines through walks of 9 keyframes, "
+    "between keyframes and seen from the middle of their arc ('frames', by step), and rotations by up to a radian "
+    "with noise of 0.3 in every entry ('noise'). systems: linear systems that the iteration solves per matrix, each "
+    "of order three or of order two. error: largest angle from the stationary rotation, in rad. Seconds are per "
+    "matrix, timed in turn on one thread, compiled, and compared with numpy's singular values of all matrices in one "
+    "call; lower is better."
 )
 FORMATS = {
     "error": ".1e",

@@ -1,4 +1,4 @@
-"""Dense recorded motion, rebuilt from every so many-th frame: what schemes are worth on what people record."""
+"""Dense recorded motion, rebuilt from every n-th frame: what schemes are worth on what people record."""
 
 from collections.abc import Sequence
 from functools import cache, partial
@@ -9,7 +9,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from quatspline.catalogue import found
-from quatspline.figures import style
+from quatspline.figures import rows, style
 from quatspline.figures.heat import ROW, label_cells, log_heat
 from quatspline.instruments.reconstruction import EULER, Truth, rebuild, reconstruction, truth
 from quatspline.instruments.summary import ALL, compared
@@ -24,19 +24,19 @@ TITLE = "Recorded motion, rebuilt"
 PAPER = False
 KEYS = ["clip", "filter", "every", "scheme"]
 NOTE = (
-    "Of dense motion every so many-th frame and the last are kept, and the others rebuilt. Clips are the files of the "
-    f"folder that QUATSPLINE_MOTIONS names; without it the project's own, '{OWN}', which its generator made and nobody "
-    f"recorded. '{ALL}' takes the joints of all clips together. filter: what the truth is, the recording (none) or "
-    "what a zero-phase Butterworth filter of its steps leaves. Angles are of local orientations at the frames left "
-    "out, but for those within two keyframes of an end; lower is better. over_slerp: a joint's rms angle over slerp's, "
-    "geometric mean over the compared joints, on which all schemes ran that ran on nine tenths of the clip's; "
-    "most_over_slerp: the largest. rms_degrees: the joints' rms angle, median; worst_degrees: the largest, of "
-    "worst_joint; largest_degrees: the largest angle of all. end_cm: rms distance of end effectors, the root's path "
-    "being the true one; omega, alpha: rms errors of angular velocity and acceleration over the rms of the truth's, of "
-    "filtered truth alone. Left out are joints that turn less than 1 degree, fingers and thumbs, and those of pops, "
-    "which turn faster than 1800 degrees a second somewhere. At quick size the middle 180 frames are taken. Controls: "
-    "euler-linear and euler-cubic interpolate Euler channels; 'tumble' is motion without noise, 'white noise' noise "
-    "without motion."
+    "Every n-th frame of a dense motion and the last one are kept, and the others are rebuilt. Clips are the files in "
+    f"the folder that QUATSPLINE_MOTIONS names; without it, the project's own clip '{OWN}', which is generated and not "
+    f"recorded. '{ALL}' pools the joints of all clips. filter: the truth is the recording itself (none) or what a "
+    "zero-phase Butterworth filter of its steps leaves. Angles are of local orientations at the frames left out, "
+    "except those within two keyframes of an end; lower is better. over_slerp: a joint's rms angle relative to "
+    "slerp's, geometric mean over the compared joints, which are those on which all schemes ran that ran on nine "
+    "tenths of the clip's joints; most_over_slerp: the largest. rms_degrees: the joints' rms angle, median; "
+    "worst_degrees: the largest, for worst_joint; largest_degrees: the largest angle of all. end_cm: rms distance of "
+    "end effectors, with the true path of the root; omega, alpha: rms errors of angular velocity and acceleration "
+    "relative to the rms of the truth's, only for filtered truth. Excluded are joints that turn less than 1 degree, "
+    "fingers and thumbs, and those in pops, which turn faster than 1800 degrees a second somewhere. At quick size the "
+    "middle 180 frames are used. Controls: euler-linear and euler-cubic interpolate Euler channels; 'tumble' is "
+    "motion without noise, 'white noise' is noise without motion."
 )
 FORMATS = {
     **dict.fromkeys(
@@ -130,12 +130,11 @@ def _replay(name: str, schemes: Sequence[str]) -> list[dict[str, Any]]:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    panels = [(ALL, each) for each in CUTOFFS if _shown(table, ALL, each).size]
-    panels += [(name, RAW) for name in CONTROLS if _shown(table, name, RAW).size]
-    order = _order(table)
-    fig, axes = style.axes(style.PAGE, ROW * len(order) + 1.3, 1, len(panels))
+    panels, sharing = _panels(table), _sharing(table)
+    names = list(sharing)
+    fig, axes = style.axes(style.PAGE, ROW * len(names) + 1.2, 1, len(panels))
     for ax, (name, each) in zip(axes[0], panels, strict=True):
-        shown = _shown(table, name, each).reindex(order)
+        shown = _shown(table, name, each).reindex(names)
         looks: dict[str, Any] = {
             "names_shown": ax is axes[0, 0],
             "colours": "RdBu_r",
@@ -144,9 +143,23 @@ def draw(table: pd.DataFrame) -> Figure:
         }
         log_heat(ax, shown, "rms angle over slerp's", (1 / SPAN, SPAN), **looks)
         label_cells(ax, shown.map(_text), shown.gt(DARK) | shown.lt(1 / DARK))
-        ax.set(title=_title(name, each), xlabel="every ... frame kept")
+        ax.set(title=_title(name, each), xlabel="one frame kept of")
+    rows.label(axes[0, 0], names, sharing, None)
     style.letters(axes[0])
     return fig
+
+
+def _panels(table: pd.DataFrame) -> list[tuple[str, str]]:
+    """Clips and filters of which there are numbers."""
+    panels = [(ALL, each) for each in CUTOFFS] + [(name, RAW) for name in CONTROLS]
+    return [panel for panel in panels if _shown(table, *panel).size]
+
+
+def _sharing(table: pd.DataFrame) -> dict[str, list[str]]:
+    """Schemes with a row of their own, the best on recorded motion first."""
+    shown = {panel: _shown(table, *panel) for panel in _panels(table)}
+    ratios = pd.concat(shown, axis=1).reindex(_order(table))
+    return rows.shared(ratios.clip(1 / SPAN, SPAN).transform(np.log))
 
 
 SPAN = 8.0
@@ -157,17 +170,17 @@ TICKS = {1 / 8: "1/8", 1 / 2: "1/2", 2.0: "2", 8.0: "8"}
 
 
 def _shown(table: pd.DataFrame, name: str, filter: str) -> pd.DataFrame:
-    rows = table[(table["clip"] == name) & (table["filter"] == filter)]
-    return rows.pivot(index="scheme", columns="every", values="over_slerp").dropna(how="all")
+    own = table[(table["clip"] == name) & (table["filter"] == filter)]
+    return own.pivot(index="scheme", columns="every", values="over_slerp").dropna(how="all")
 
 
 def _order(table: pd.DataFrame) -> list[str]:
     """Schemes that ran, the best on recorded motion first."""
-    rows = table[(table["clip"] == ALL) & table["over_slerp"].notna()]
-    logs = np.log(rows["over_slerp"])
+    own = table[(table["clip"] == ALL) & table["over_slerp"].notna()]
+    logs = np.log(own["over_slerp"])
     # Over the other schemes of a cell: one that did not run in all is not judged by which.
-    logs -= logs.groupby([rows["filter"], rows["every"]]).transform("median")
-    return [str(name) for name in logs.groupby(rows["scheme"]).mean().sort_values().index]
+    logs -= logs.groupby([own["filter"], own["every"]]).transform("median")
+    return [str(name) for name in logs.groupby(own["scheme"]).mean().sort_values().index]
 
 
 def _text(ratio: float) -> str:
@@ -192,7 +205,8 @@ def caption(table: pd.DataFrame) -> str:
     clips = sorted(set(table["clip"]) - {ALL, *CONTROLS})
     made = " No recorded clip was given: this is the project's own walk." if clips == [OWN] else ""
     return (
-        f"Rms angle of joints at the frames left out when every 2nd, 4th, ... frame is kept, over slerp's, geometric "
-        f"mean ({_count(clips)}): below 1 (blue) is better than slerp. Recordings as they are, low-pass filtered, "
-        f"and two controls, motion without noise and noise without motion.{made}"
+        "Rms angle of joints at the frames left out when every 2nd, 4th, ... frame is kept, relative to slerp's, "
+        f"geometric mean ({_count(clips)}): below 1 (blue) is better than slerp. Recordings as they are, low-pass "
+        f"filtered, and two controls, motion without noise and noise without motion; grey: too slow, or refused.{made} "
+        f"{rows.said(_sharing(table))}"
     )

@@ -9,7 +9,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
 from quatspline import catalogue
-from quatspline.figures import style
+from quatspline.catalogue import called
+from quatspline.figures import direct, named, style
 from quatspline.instruments.reconstruction import truth
 from quatspline.instruments.reduction import reduction
 from quatspline.instruments.summary import ALL, compared
@@ -24,14 +25,15 @@ KEYS = ["clip", "filter", "error_degrees", "scheme"]
 FRAMES, QUICK = 600, 240
 """Of a clip at most so many, from its middle; fewer at quick size."""
 NOTE = (
-    "Keyframes of a dense motion are taken in at the worst frame and out again where the others do without, joint by "
-    "joint, until the scheme rebuilds every frame within error_degrees. Clips and what is left out of them are those "
-    f"of the experiment reconstruct; of a clip the middle {FRAMES} frames are taken ({QUICK} at quick size). "
-    "keyframes: of all joints that did not fail; share: of their frames; per_second: keyframes of a joint a second; "
-    "over_slerp: a joint's keyframes over slerp's, geometric mean over the compared joints, on which all schemes ran; "
-    "most_over_slerp: the largest; lower is better. Greedy: fewer may do. Only schemes of this package are tried that "
-    "are cheap to set up, at quick size those of the figure, unless others are asked for. Without recorded clips "
-    f"there is '{OWN}' alone, which the project's generator made."
+    "Keyframes of a dense motion are inserted at the worst frame, and removed again where their neighbours do not "
+    "need them, joint by joint, until the scheme rebuilds every frame within error_degrees. The clips and the "
+    f"exclusions are those of the experiment reconstruct; the middle {FRAMES} frames of a clip are used ({QUICK} at "
+    "quick size). keyframes: of all joints that did not fail; share: the same relative to their frames; per_second: "
+    "keyframes per joint and second; over_slerp: a joint's number of keyframes relative to slerp's, geometric mean "
+    "over the compared joints, on which all schemes ran; most_over_slerp: the largest; lower is better. The search is "
+    "greedy: fewer may be enough. Only schemes of this package that are cheap to set up are tried (at quick size "
+    f"those of the figure), unless others are requested. Without recorded clips there is only '{OWN}', which the "
+    "project generates."
 )
 FORMATS = {
     "share": ".3f",
@@ -88,14 +90,14 @@ def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     filters = [each for each in CUTOFFS if (table["filter"] == each).any()]
-    fig, panels = style.axes(style.PAGE, 3.4, 1, 2 * len(filters))
+    fig, panels = style.axes(style.PAGE, 3.0, 1, 2 * len(filters))
     panels[0, len(filters) - 1].sharey(panels[0, 0])
     panels[0, -1].sharey(panels[0, len(filters)])
     for k, each in enumerate(filters):
         rows = table[(table["filter"] == each) & table["scheme"].isin(SHOWN)]
         shares, ratios = panels[0, k], panels[0, len(filters) + k]
         _lines(shares, _shares(rows))
-        _lines(ratios, rows[rows["clip"] == ALL].set_index("error_degrees"), "over_slerp")
+        ends = _lines(ratios, rows[rows["clip"] == ALL].set_index("error_degrees"), "over_slerp")
         title = "as recorded" if each == RAW else f"below {each}"
         shares.set(title=title, yscale="log", ylabel="keyframes per frame" if k == 0 else "")
         ratios.set(title=title, ylabel="keyframes over slerp's" if k == 0 else "")
@@ -108,7 +110,7 @@ def draw(table: pd.DataFrame) -> Figure:
         ax.minorticks_off()
         ax.set_xlabel("allowed error (degrees)")
     style.letters(panels[0])
-    style.legend_of(fig, panels[0, 0], len(SHOWN))
+    named.name_ends(fig, {panels[0, -1]: ends})
     return fig
 
 
@@ -120,11 +122,17 @@ def _shares(rows: pd.DataFrame) -> pd.DataFrame:
     return sums.set_index("error_degrees")
 
 
-def _lines(ax: Any, rows: pd.DataFrame, column: str = "share") -> None:
+def _lines(ax: Any, rows: pd.DataFrame, column: str = "share") -> dict[str, direct.End]:
+    """Draw a curve per scheme; where each ends."""
+    ends = {}
     for name in SHOWN:
-        own = rows.loc[rows["scheme"] == name, column]
-        if own.notna().any():
-            ax.plot(own.index, own, label=name, **style.scheme_style(name))
+        own = rows.loc[rows["scheme"] == name, column].dropna().sort_index()
+        if len(own):
+            look = style.scheme_style(name)
+            ax.plot(own.index, own, **look)
+            tip = (float(own.index[-1]), float(own.iloc[-1]))
+            ends[name] = direct.End(*tip, called(name), look["color"], look["linestyle"])
+    return ends
 
 
 def _count(clips: list[str]) -> str:
@@ -135,7 +143,7 @@ def caption(table: pd.DataFrame) -> str:
     clips = sorted(set(table["clip"]) - {ALL})
     made = " No recorded clip was given: this is the project's own walk." if clips == [OWN] else ""
     return (
-        "Keyframes that greedy reduction keeps of recorded motion against the error that is allowed at every frame, "
-        f"joint by joint ({_count(clips)}): their share of all frames, and their number over that of slerp, "
-        f"geometric mean over joints. Recordings as they are, and low-pass filtered.{made}"
+        "Keyframes of recorded motion that greedy reduction keeps, by the error allowed at every frame, joint by joint "
+        f"({_count(clips)}): as a share of all frames, and relative to slerp's number, geometric mean over joints. "
+        f"Recordings as they are, and low-pass filtered.{made}"
     )

@@ -1,4 +1,4 @@
-"""What stands in for slerp, and how far it is off: terms of a polynomial, steps of a recurrence, the chord."""
+"""Substitutes for slerp, and how far they are off: terms of a polynomial, steps of a recurrence, the chord."""
 
 from functools import partial
 from typing import Any
@@ -8,7 +8,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from quatspline.catalogue import version
-from quatspline.figures import style
+from quatspline.figures import direct, named, style
 from quatspline.instruments.slerp_variants import largest_error, nlerp_error
 from quatspline.instruments.trials import Row, attempted
 from quatspline.runs.experiment import Run
@@ -18,10 +18,11 @@ PAPER = False
 KEYS = ["scheme", "sphere_degrees", "terms", "steps"]
 NOTE = (
     "Two keyframes, sphere_degrees apart on the sphere of unit quaternions, which is a rotation by twice that angle, "
-    "step_degrees. error: the largest angle from slerp, as a rotation in rad, 8193 samples per arc in random frames; "
-    "sphere_error_degrees: the same on the sphere in degrees, so half of it; lower is better. fast-slerp by terms, "
-    "incremental-slerp by steps; growth: the power of the number of steps that its drift grows with, by regression "
-    "over all of them. closed_form: nlerp's error by its formula, which has nothing to do with the samples."
+    "step_degrees. error: the largest angle from slerp, as a rotation in rad, at 8193 samples per arc in random "
+    "frames; sphere_error_degrees: the same on the sphere in degrees, which is half of it; lower is better. "
+    "fast-slerp is tried by terms, incremental-slerp by steps; growth: the power of the number of steps with which "
+    "its drift grows, by regression over all of them. closed_form: nlerp's error by its formula, which is independent "
+    "of the samples."
 )
 FORMATS = {
     "error": ".3e",
@@ -94,30 +95,38 @@ def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    fig, panels = style.axes(style.PAGE, 3.0, 1, 3)
+    fig, panels = style.axes(style.PAGE, 2.8, 1, 3)
+    ends = {}
     for ax, name, setting in (
         (panels[0, 0], "fast-slerp", "terms"),
         (panels[0, 1], "incremental-slerp", "steps"),
     ):
-        rows = table[table["scheme"] == name]
-        for degrees, color, marker in zip(SHOWN, style.PALETTE, style.MARKERS, strict=False):
-            arc = rows[rows["sphere_degrees"] == degrees].sort_values(setting)
-            label = f"{degrees}° on the sphere"
-            ax.plot(arc[setting], arc["error"], color=color, marker=marker, label=label)
-        ax.set(title=name, xlabel=setting, yscale="log")
-    panels[0, 0].set_ylabel("largest angle from slerp (rad)")
+        ends[ax] = _arcs(ax, table[table["scheme"] == name].sort_values(setting), setting)
+        ax.set(title=name, xlabel=setting, yscale="log", ylabel="largest angle from slerp (rad)")
     panels[0, 1].set_xscale("log", base=2)
     _chord(panels[0, 2], table[table["scheme"] == "nlerp"].sort_values("sphere_degrees"))
     style.letters(panels[0])
-    style.legend_of(fig, panels[0, 0], 3)
+    named.name_ends(fig, ends)
     return fig
 
 
+def _arcs(ax: Any, rows: pd.DataFrame, setting: str) -> dict[str, direct.End]:
+    """A curve per angle, and its end."""
+    ends = {}
+    for degrees, color, marker in zip(SHOWN, style.PALETTE, style.MARKERS, strict=False):
+        arc = rows[(rows["sphere_degrees"] == degrees) & rows["error"].notna()]
+        ax.plot(arc[setting], arc["error"], color=color, marker=marker)
+        if len(arc):
+            text = f"{degrees}°"
+            ends[text] = direct.End(arc[setting].iloc[-1], arc["error"].iloc[-1], text, color)
+    return ends
+
+
 def _chord(ax: Any, rows: pd.DataFrame) -> None:
-    """nlerp's error as measured, on its formula."""
+    """nlerp's error as measured, on its formula; in no colour that stands for an angle."""
     angles = np.linspace(1.0, max(rows["sphere_degrees"].max(), 2.0), 200)
     formula = [np.degrees(0.5 * nlerp_error(theta)) for theta in np.radians(angles)]
-    ax.plot(angles, formula, color=style.PALETTE[0], lw=1.0)
+    ax.plot(angles, formula, color="#8a8a8a", lw=1.0)
     ax.plot(rows["sphere_degrees"], rows["sphere_error_degrees"], "k.", ms=5)
     ax.set(title="nlerp", xlabel="angle on the sphere (degrees)", yscale="log")
     ax.set_ylabel("largest angle from slerp\non the sphere (degrees)")
@@ -126,7 +135,7 @@ def _chord(ax: Any, rows: pd.DataFrame) -> None:
 def caption(table: pd.DataFrame) -> str:
     return (
         "Largest angle from slerp: (a) of Eberly's polynomial against its terms and (b) of the incremental recurrence "
-        "against its steps an arc, as a rotation, at three angles on the sphere of unit quaternions (90 degrees there "
-        "are half a turn); (c) of nlerp against the angle, on the sphere: measured (dots), by its formula (line). "
-        "Lower is better; rounding is 1e-16 to 1e-15."
+        "against its steps an arc, as a rotation, for arcs of the angles beside the curves, on the sphere of unit "
+        "quaternions (90 degrees there are half a turn); (c) of nlerp against the angle, on the sphere: measured "
+        "(dots), by its formula (line). Lower is better; rounding is 1e-16 to 1e-15."
     )

@@ -1,11 +1,16 @@
 """Speed on fixed tasks: every scheme beside what one core can do."""
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
 from quatspline.catalogue import found, version
+from quatspline.figures import rows as scheme_rows
 from quatspline.figures import style
+from quatspline.figures.heat import SMALL, TIGHT
+from quatspline.figures.named import SAID
 from quatspline.runs.experiment import FULL, QUICK, Run
 from quatspline.timing.floors import MULTIPLY_ADD, WRITING, attainable
 from quatspline.timing.interleaved import LEAST
@@ -16,13 +21,13 @@ PAPER = False
 SERIAL = True
 KEYS = ["task", "scheme"]
 NOTE = (
-    "Medians of interleaved, calibrated rounds on one thread unless the task says otherwise, compilation and warm-up "
-    "apart; keyframes are a walk of 40-degree steps. instructions are packed arithmetic ones per item, counted by "
-    "running the kernels, each for as many samples as a vector holds. nanoseconds_attainable is the larger of their "
-    "time at the rate of the row multiply-add and of the row writing, and timed_share what that is of the measured "
-    "time, in percent. times_sincos: over one numpy sine and cosine an item in the same run. Slow peers do the first "
-    "items only. "
-    "Iterative schemes solve to 1e-9. 'start' rows are seconds in new processes."
+    "Medians of interleaved, calibrated rounds on one thread unless the task says otherwise, without compilation and "
+    "warm-up; keyframes are a walk of 40-degree steps. instructions: packed arithmetic instructions per item, counted "
+    "by running the kernels, each for as many samples as a vector holds. nanoseconds_attainable: the larger of two "
+    "times, that of these instructions at the rate of the row multiply-add and that of the row writing; timed_share: "
+    "this as a percentage of the measured time. times_sincos: relative to one numpy sine and cosine per item in the "
+    "same run. Slow peers do only the first items. Iterative schemes solve to 1e-9. 'start' rows are seconds in new "
+    "processes."
 )
 FORMATS = {
     "seconds_median": ".3g",
@@ -110,35 +115,41 @@ def _starts(rounds: int, run: Run) -> list[dict[str, object]]:
 
 
 PANELS = ("evaluate", "one sample", "set-up")
+LINES = {WRITING: ("-", "writing"), SINCOS: (":", "sin, cos")}
+"""Floors in the figure."""
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Nanoseconds per item, in-house schemes in colour, peers hollow, the floors as lines."""
-    fig, panels = style.axes(style.PAGE, 6.4, 1, len(PANELS), sharey=True)
-    order = table[(table["task"] == PANELS[0]) & table["seconds_median"].notna()]
-    names = [n for n in order.sort_values("nanoseconds_per_item")["scheme"] if n not in FLOORS]
+    """Nanoseconds per item, the quickest on top, the floors as lines."""
+    measured = table[table["seconds_median"].notna()]
+    order = measured[measured["task"] == PANELS[0]].sort_values("nanoseconds_per_item")["scheme"]
+    names = [name for name in order if name not in FLOORS]
+    fig, panels = style.axes(style.PAGE, TIGHT * len(names) + 1.0, 1, len(PANELS), sharey=True)
     for ax, task in zip(panels[0], PANELS, strict=True):
-        rows = table[(table["task"] == task) & table["seconds_median"].notna()].set_index("scheme")
-        for height, name in enumerate(names):
-            if name in rows.index:
-                looks = style.scheme_style(name) | {"linestyle": ""}
-                ax.plot(rows.loc[name, "nanoseconds_per_item"], height, **looks)
-        for floor, dash in zip((WRITING, SINCOS), ("-", ":"), strict=True):
-            if floor in rows.index:
-                ax.axvline(
-                    rows.loc[floor, "nanoseconds_per_item"], color="#999999", ls=dash, lw=0.8
-                )
+        rows = measured[measured["task"] == task].set_index("scheme")
+        scheme_rows.mark(ax, rows["nanoseconds_per_item"], names)
         unit = rows["unit"].drop(MULTIPLY_ADD, errors="ignore").iloc[0]
-        ax.set(xscale="log", title=task, xlabel=f"ns per {unit}", yticks=range(len(names)))
-    panels[0, 0].set_yticklabels(names)
-    panels[0, 0].set_ylim(-0.7, len(names) - 0.3)
+        ax.set(xscale="log", title=task, xlabel=f"ns per {unit}")
+        _floors(ax, rows["nanoseconds_per_item"])
+    scheme_rows.label(panels[0, 0], names, {})
     style.letters(panels[0])
     return fig
+
+
+def _floors(ax: Any, nanoseconds: pd.Series) -> None:
+    """Lines with what they are, written along them where no scheme is as quick: at the bottom."""
+    for floor, (dash, text) in LINES.items():
+        if floor in nanoseconds:
+            ax.axvline(nanoseconds[floor], color="#777777", ls=dash, lw=0.8, zorder=1)
+            at = {"xytext": (2, 3), "textcoords": "offset points", "rotation": 90, "va": "bottom"}
+            where = (nanoseconds[floor], 0.0)
+            place = {"xycoords": ax.get_xaxis_transform(), "fontsize": SMALL, "color": "#555555"}
+            ax.annotate(text, where, **at, **place)
 
 
 def caption(table: pd.DataFrame) -> str:
     return (
         "Cost per sample of evaluating sorted samples of a curve through a thousand keyframes, of one sample per call, "
-        "and per keyframe of its set-up, medians; hollow: third-party libraries. Grey lines are floors: "
-        "writing the result (solid), one sine and cosine per sample (dotted)."
+        "and per keyframe of its set-up, medians, sorted by the first. Grey lines are floors: writing the result "
+        f"(solid), one sine and cosine per sample (dotted). {SAID}"
     )

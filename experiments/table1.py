@@ -1,4 +1,4 @@
-"""Table 1 of the paper: iterations and seconds, under its own protocol and under the other one."""
+"""Table 1 of the paper: iterations and seconds, under its own protocol and under solving once."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -22,11 +22,11 @@ PAPER = True
 SCHEMES = ("quartic", "nielson", "kim")
 KEYS = ["case", "frames", "protocol", "scheme"]
 NOTE = (
-    f"{RECONSTRUCTED} The paper's seconds are its own (Matlab 7.11, Core i5-3210M), measured per frame; "
-    "they stand beside both protocols for comparison of the ratios. Rows of 9 and 12 frames include "
-    "rendering. slerps, exps and logs are counts of all that is executed for the frames: *_updates in updates of the "
-    "iteration and in the frames' own samples, *_rest in set-up and in the final residual. Timed is the "
-    "fit and the evaluation of prepared keyframes; 'public call' rows add validation."
+    f"{RECONSTRUCTED} The paper's seconds are its own (Matlab 7.11, Core i5-3210M), measured per frame; they are shown "
+    "beside both protocols so that the ratios can be compared. Rows of 9 and 12 frames include rendering. slerps, "
+    "exps and logs count everything executed for the frames: *_updates in updates of the iteration and in samples of "
+    "the frames, *_rest in set-up and in the final residual. The fit and the evaluation of prepared keyframes are "
+    "timed; 'public call' rows add validation."
 )
 FORMATS = {
     "seconds_median": ".3g",

@@ -1,12 +1,11 @@
 """The picture of each page that derives schemes: their blending functions, and keyframes on which they fail.
 
-What a page shows is a row of `SHOWN`; the rest is the same for all.
+What a page shows is a row of `shown.SHOWN`; the rest is the same for all.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -22,162 +21,21 @@ from quatspline.figures import direct, style
 from quatspline.figures.looks import DASHES
 from quatspline.inputs.arrays import FloatArray
 from quatspline.instruments.blending import blending
-from quatspline.trajectories.walks import walk
+from tools.shown import SHOWN, Shown
 
 PREFIX = "derivation-"
 """Of the picture's name, before that of the page."""
 SAMPLES = 120
 """Of a segment."""
+BELOW = 0.04
+"""Of an axis, under its zero: what is still there is not hidden by its frame."""
+LEAD = 16.0
+"""Points of the lines to names: enough to tell dashes."""
 NAMED = {
     0: "angle from a keyframe (°)",
     1: "angular speed (° per unit of time)",
     2: "acceleration (° per unit$^2$)",
 }
-Set = Callable[[], tuple[FloatArray, FloatArray]]
-
-
-def _walk(seed: int, count: int, degrees: float, spacings: Sequence[float] = (1.0,)) -> Set:
-    """Random axes; the spacings are taken in turn."""
-
-    def made() -> tuple[FloatArray, FloatArray]:
-        times = np.cumsum([0.0, *np.resize(spacings, count - 1)])
-        return times, walk(np.random.default_rng(seed), count, degrees)[:, 0]
-
-    return made
-
-
-def _turned(*degrees: float) -> Set:
-    """About one axis, to given angles, at equal times."""
-
-    def made() -> tuple[FloatArray, FloatArray]:
-        half = 0.5 * np.radians(degrees)[:, None] * [0.0, 0.0, 1.0]
-        return np.arange(len(degrees), dtype=float), quaternion.align(quaternion.exp(half))
-
-    return made
-
-
-def _held() -> tuple[FloatArray, FloatArray]:
-    """Two moves, a hold of five times their length, and two moves more."""
-    q = walk(np.random.default_rng(4), 5, 90.0)[:, 0]
-    return np.array([0.0, 1.0, 2.0, 7.0, 8.0, 9.0]), q[[0, 1, 2, 2, 3, 4]]
-
-
-@dataclass(frozen=True)
-class Shown:
-    """What the picture of a page shows.
-
-    scheme : whose blending functions are drawn, ``cumulative`` ones where the page is written in them, of as many
-        keyframes as are ``around`` the segment
-    keyframes, order, curves : the right panel: the angle from a keyframe, ``origin``, |omega| or |alpha| over time,
-        of schemes, or of schemes with options by what they are called there
-    component : of the vector, drawn in place of its length
-    inner : segments at either end that are left out, on a panel about what happens between others
-    """
-
-    scheme: str
-    keyframes: Set
-    order: int
-    curves: Mapping[str, Mapping[str, Any]] | Sequence[str]
-    cumulative: bool = False
-    around: int = 4
-    options: Mapping[str, Any] = field(default_factory=dict)
-    log: bool = False
-    origin: int = 0
-    inner: int = 0
-    component: int | None = None
-
-
-SHOWN: dict[str, Shown] = {
-    "slerp": Shown("slerp", _walk(1, 5, 150.0, (1.0, 1.5)), 1, ("slerp", "nlerp"), around=2),
-    "bezier-and-barry-goldman": Shown(
-        "catmull-rom", _walk(2, 6, 60.0), 2, ("catmull-rom", "barry-goldman")
-    ),
-    "squad": Shown(
-        "squad",
-        _walk(3, 6, 60.0, (1.0, 3.0)),
-        1,
-        {"squad": {}, "squad, textbook points": {"inner": "textbook"}},
-    ),
-    "hermite": Shown("hermite", _walk(2, 6, 60.0), 2, ("hermite", "kim"), cumulative=True),
-    "biarc": Shown("biarc", _walk(2, 6, 60.0), 1, ("biarc", "catmull-rom")),
-    "circular-blend": Shown(
-        "circular-blend", _turned(0, 40, 80, 75, 35, 0), 0, ("circular-blend", "catmull-rom")
-    ),
-    "quartic": Shown(
-        "quartic",
-        _turned(*(8.0 * k * k / 2.0 for k in range(8))),
-        2,
-        ("quartic", "quintic"),
-        cumulative=True,
-        inner=1,
-    ),
-    "quintic": Shown(
-        "quintic",
-        _turned(*(8.0 * k * k / 2.0 for k in range(8))),
-        2,
-        {
-            "quintic, κ = 1": {"curvature": 1.0},
-            "quintic, κ = 0": {"curvature": 0.0},
-            "quintic, κ = 3": {"curvature": 3.0},
-        },
-        cumulative=True,
-        inner=1,
-    ),
-    "local-quintic": Shown(
-        "local-quintic", _held, 0, ("local-quintic", "monotone-quintic"), around=6, origin=2
-    ),
-    "monotone-quintic": Shown(
-        "monotone-quintic", _walk(2, 6, 60.0), 2, ("monotone-quintic", "local-quintic"), around=6
-    ),
-    "kim": Shown(
-        "kim", _turned(0, 0, 0, 90, 90, 90), 0, ("kim", "slerp"), cumulative=True, around=6
-    ),
-    "nielson": Shown(
-        "nielson",
-        _walk(2, 6, 120.0, (3.0, 1.0, 1.0)),
-        2,
-        ("nielson", "local-quintic"),
-        around=6,
-        component=0,
-    ),
-    "spherical-average": Shown(
-        "spherical-average", _held, 0, ("spherical-average", "slerp"), around=6, origin=2
-    ),
-    "moving-frame": Shown(
-        "moving-frame", _walk(2, 6, 150.0), 1, ("moving-frame", "local-quintic"), around=6
-    ),
-    "log-cubic": Shown(
-        "log-cubic", _turned(*(50.0 * k for k in range(9))), 1, ("log-cubic", "slerp"), around=6
-    ),
-    "cubics-in-r4": Shown(
-        "normalised-cubic",
-        _walk(2, 6, 160.0),
-        1,
-        ("normalised-cubic", "gltf-cubic", "local-quintic"),
-        around=6,
-    ),
-    "park-ravani": Shown("park-ravani", _walk(2, 9, 40.0), 1, ("park-ravani", "kim"), log=True),
-    "min-torque": Shown(
-        "min-torque", _held, 0, ("min-torque", "monotone-quintic"), around=6, origin=2
-    ),
-    "smoothing-spline": Shown(
-        "smoothing-spline",
-        _turned(0, 0, 0, 0, 90, 90, 90, 90),
-        0,
-        {"kim": {}, "smoothing-spline": {"smoothing": 1.0}},
-        around=6,
-        options={"smoothing": 1.0},
-    ),
-    "least-squares": Shown(
-        "least-squares",
-        _turned(0, 0, 0, 0, 90, 90, 90, 90),
-        0,
-        ("kim", "least-squares"),
-        cumulative=True,
-        around=6,
-    ),
-}
-"""By the name of the page's file."""
 
 
 def drawn(shown: Shown) -> Figure:
@@ -209,11 +67,13 @@ def _blends(ax: Any, shown: Shown) -> None:
     symbol = "L" if shown.cumulative else "q"
     first = 1 - shown.around // 2 - shown.cumulative
     ends = []
-    for k, name in enumerate(table):
-        color, place = style.PALETTE[k], first + k
-        ax.plot(u, table[name], color=color, ls=DASHES[k % len(DASHES)])
+    for place, name in enumerate(table, first):
+        k = 2 * place - 1 if place > 0 else -2 * place  # looks go by the place, on every page
+        color, dash = style.PALETTE[k], DASHES[k]
+        ax.plot(u, table[name], color=color, ls=dash)
         index = f"i{place:+d}" if place else "i"
-        ends.append(direct.End(1.0, table[name].iloc[-1], f"${symbol}_{{{index}}}$", color))
+        text = f"${symbol}_{{{index}}}$"
+        ends.append(direct.End(1.0, table[name].iloc[-1], text, color, dash))
     of = "step" if shown.cumulative else "keyframe"
     ax.set(xlabel="$u$", ylabel=f"weight of a {of}", xlim=(0.0, 1.0))
     direct.label_ends(ax, ends)
@@ -223,46 +83,59 @@ def _failure(ax: Any, shown: Shown) -> None:
     times, q = shown.keyframes()
     curves = shown.curves
     if not isinstance(curves, Mapping):
-        curves = {called(name): {"name": name} for name in curves}
+        curves = {name: {} for name in curves}
     ends = [
-        _line(ax, text, shown, k, times, q, dict(given))
-        for k, (text, given) in enumerate(curves.items())
+        _line(ax, text, shown, looks, qs.build(text.split(",")[0], times, q, **given))
+        for looks, (text, given) in zip(_looks(list(curves)), curves.items(), strict=True)
     ]
     for time in times:
         ax.axvline(time, color="#d9d9d9", lw=0.5, zorder=0)
     ax.set(
-        xlabel="time", ylabel=NAMED[shown.order], xlim=(times[shown.inner], times[-1 - shown.inner])
+        xlabel="time (lines at keyframes)",
+        ylabel=_quantity(shown),
+        xlim=(times[shown.inner], times[-1 - shown.inner]),
     )
     ax.grid(visible=False)
     if shown.log:
         ax.set_yscale("log")
     elif shown.component is None:
-        ax.set_ylim(0.0, None)
-    direct.label_ends(ax, ends)
+        ax.set_ylim(-BELOW * ax.get_ylim()[1], None)
+    direct.label_ends(ax, ends, lead=LEAD)
 
 
-def _line(
-    ax: Any,
-    text: str,
-    shown: Shown,
-    k: int,
-    times: FloatArray,
-    q: FloatArray,
-    given: dict[str, Any],
-) -> direct.End:
+def _quantity(shown: Shown) -> str:
+    name, unit = NAMED[shown.order].split(" (")
+    which = "" if shown.component is None else f", ${'xyz'[shown.component]}$"
+    return f"{name}{which} ({unit}"
+
+
+def _looks(texts: Sequence[str]) -> list[dict[str, Any]]:
+    """How curves look: as their schemes do, but for a dash that one before them has, since colours may not print."""
+    found: list[dict[str, Any]] = []
+    for k, text in enumerate(texts):
+        name, *way = text.split(",")
+        looks = style.scheme_style(name) | {"marker": ""}
+        if way:  # the same scheme with other options
+            looks |= {"color": style.PALETTE[k], "linestyle": DASHES[k]}
+        taken = [other["linestyle"] for other in found]
+        if looks["linestyle"] in taken:
+            looks["linestyle"] = next(dash for dash in DASHES if dash not in taken)
+        found.append(looks)
+    return found
+
+
+def _line(ax: Any, text: str, shown: Shown, looks: dict[str, Any], curve: Curve) -> direct.End:
     """Draw a quantity segment by segment, since it may leap at keyframes; where it ends."""
-    name = given.pop("name", text.split(",")[0])
-    looks = style.scheme_style(name) | {"marker": ""}
-    if "," in text:  # the same scheme with other options
-        looks |= {"color": style.PALETTE[k], "linestyle": DASHES[k]}
-    curve = qs.build(name, times, q, **given)
     end = 0.0
+    times = curve.keyframes.times
     inside = times[shown.inner : len(times) - shown.inner]
     for a, b in pairwise(inside):
         t, values = _piece(curve, a, b, shown)
         ax.plot(t, values, **looks)
         end = values[-1]
-    return direct.End(inside[-1], end, text, looks["color"])
+    name, *way = text.split(",")
+    told = ",".join([called(name), *way])
+    return direct.End(inside[-1], end, told, looks["color"], looks["linestyle"])
 
 
 def _piece(curve: Curve, a: float, b: float, shown: Shown) -> tuple[FloatArray, FloatArray]:

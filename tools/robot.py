@@ -20,6 +20,8 @@ from quatspline.motion import Motion
 SHOWN = ("slerp", "squad", "local-quintic", "monotone-quintic")
 SAMPLES = 200
 """Of a segment."""
+BELOW = 0.04
+"""Of the axis, under its zero: who waits is not hidden by its frame."""
 REST = 1e-9
 """Radians that a body at rest may turn by rounding."""
 
@@ -35,7 +37,8 @@ def robot(file: Path, picture: Path) -> None:
             _shaded(ax, *wait)
         ends = [_drawn(ax, name, curve) for name, curve in curves.items()]
         ax.set(xlabel="time (s)", ylabel="angular speed (°/s)")
-        ax.set(xlim=(0.0, motion.times[-1]), ylim=(0.0, None))
+        ax.set_xlim(0.0, motion.times[-1])
+        ax.set_ylim(-BELOW * ax.get_ylim()[1], None)
         ax.grid(visible=False)
         fig.subplots_adjust(left=0.07, right=0.82, top=0.97, bottom=0.18)
         direct.label_ends(ax, ends)
@@ -60,7 +63,7 @@ def _drawn(ax: Any, name: str, curve: Curve) -> direct.End:
     looks = style.scheme_style(name) | {"marker": ""}
     t, speed = _speed(curve)
     ax.plot(t, speed, **looks)
-    return direct.End(t[-1], speed[-1], called(name), looks["color"])
+    return direct.End(t[-1], speed[-1], called(name), looks["color"], looks["linestyle"])
 
 
 def _speed(curve: Curve) -> tuple[FloatArray, FloatArray]:

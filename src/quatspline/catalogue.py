@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from quatspline.curve import Curve
-from quatspline.discovery import PROPOSED, Found, discover, shipped
+from quatspline.discovery import PROPOSED, Found, discover, named, shipped
 from quatspline.options import nearest
 from quatspline.peers import installed
 from quatspline.system.forking import undivided
@@ -84,13 +84,22 @@ def _changed(folder: Path) -> int:
         return 0
 
 
-def _find(places: tuple[Path, ...]) -> dict[str, Found]:
+def names() -> list[str]:
+    """Sorted names of every scheme, usable or not; nothing is imported."""
+    return sorted(set(named(_files(_folders(os.environ.get(FOLDERS, ""))))))
+
+
+def _files(places: tuple[Path, ...]) -> tuple[Path, ...]:
     files = [path for folder in places for path in sorted(folder.glob("[!_]*.py"))]
     once = {
         os.path.realpath(path): path for path in reversed(files)
     }  # the first folder that has it
+    return tuple(reversed(once.values()))
+
+
+def _find(places: tuple[Path, ...]) -> dict[str, Found]:
     everything: dict[str, Found] = {}
-    for item in discover(tuple(reversed(once.values()))):
+    for item in discover(_files(places)):
         other = everything.get(item.name)
         everything[item.name] = item if other is None else _twice(other, item)
         if item.scheme is not None:
@@ -105,7 +114,7 @@ def _twice(one: Found, other: Found) -> Found:
 
 
 def schemes() -> list[str]:
-    """Sorted names of every usable scheme, peers included where their library imports.
+    """Sorted names of all usable schemes, including those of installed libraries.
 
     Examples
     --------
@@ -122,7 +131,7 @@ def scheme(name: str) -> type[Curve]:
     Raises
     ------
     ValueError
-        An unknown name (with the nearest known one), or a scheme that cannot be used and why.
+        For an unknown name (with the nearest known one), or a scheme that cannot be used (with the reason).
 
     Examples
     --------
@@ -170,9 +179,9 @@ def build(
     align: bool = True,
     **options: Any,
 ) -> Curve:
-    """The curve of a scheme through keyframes: the scheme's class called (see `Curve`).
+    """Build the curve of a scheme through keyframes, by calling the scheme's class (see `Curve`).
 
-    Besides the scheme's own options, ``closing_sign``, ``hold`` and ``normalise`` are as there.
+    Options are those of the scheme, and ``closing_sign``, ``hold`` and ``normalise`` of `Curve`.
 
     Examples
     --------

@@ -68,30 +68,30 @@ def compare(
     closed: bool = False,
     **options: Any,
 ) -> pd.DataFrame:
-    """Measure schemes on keyframes: one row per scheme, what does not apply or fails with its reason.
+    """Measure schemes on keyframes: one row per scheme; one that does not apply or fails has the reason.
 
     Parameters
     ----------
     times, quaternions, closed : a single track, as `quatspline.build` takes it
-    schemes : names, by default all; of those, libraries' schemes that would take long on so many
-        keyframes are left out with a reason, the same ones in every run
-    **options : of those of the schemes that have them
+    schemes : names; by default all, except library schemes that would take too long on so many
+        keyframes, which are left out with a reason and are the same in every run
+    **options : options of schemes; each is passed to the schemes that have it
 
     Returns
     -------
     DataFrame with the columns scheme, continuity, misses, torque, jerk, peak, length (rad), those
-    energies over the least of curves that pass through the keyframes, excursion and hold_rotation
+    energies relative to the least of curves that pass through the keyframes, excursion and hold_rotation
     (degrees), peak_rate (degrees/t), peak_acceleration (degrees/t^2), curvature (1/rad), keyframes_length
     (rad) and noise (degrees), the same in every row, key_speed, peak_speed, support, lookahead, solver,
     iterations, rates, version, note, failure and the timings seconds_set_up and seconds_per_sample;
-    sorted by torque, failures last.  ``failure`` says why a scheme was not
-    measured, what is measured in its row being NaN; it is NaN where one was.  ``note`` says where a
-    curve was not found by the published iteration but by the options of `Curve.rescue`.
+    sorted by torque, failures last.  ``failure`` says why a scheme was not measured, and the measurements in
+    its row are then NaN; otherwise ``failure`` is NaN.  ``note`` says if a curve was found by the options of
+    `Curve.rescue` because the published iteration failed.
 
     Raises
     ------
     ValueError
-        On bad keyframes, an unknown scheme, an option that none has, or several tracks.
+        For bad keyframes, an unknown scheme, an option that no scheme has, or several tracks.
 
     Examples
     --------

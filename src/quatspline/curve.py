@@ -47,12 +47,12 @@ class Curve(abc.ABC):
     """A unit-quaternion curve through (or near) keyframes.
 
     A scheme subclasses this in a file of its own: class attributes state its claims, `_fit`
-    prepares it, and `_orientation` evaluates it.  Input arrives validated, normalised and
-    aligned; several tracks, closed curves and the numerical rates are handled here.
+    prepares the curve, and `_orientation` evaluates it.  Input arrives validated, normalised and
+    aligned.  The base class handles several tracks, closed curves and numerical rates.
 
     Parameters
     ----------
-    times : (n,) strictly increasing, closed (n + 1,): the last is where the first keyframe returns;
+    times : (n,) strictly increasing, or (n + 1,) for a closed curve, whose last time is that of the return;
         numbers, integer stamps (subtracted as integers), datetimes or timedeltas (which count in
         seconds); None means 0, 1, 2, ...
     quaternions : (n, 4) scalar first, (n, *K, 4) for several tracks; a scipy ``Rotation``, a list of
@@ -60,10 +60,10 @@ class Curve(abc.ABC):
     closed : whether the curve returns to its first keyframe
     align : put neighbours on one hemisphere (the short way round); False keeps the signs as given
     closing_sign : with closed and align=False, -1 closes an odd number of full turns
-    hold : outside the domain of an open curve, the first or last pose at rest; False refuses such times
-    normalise : take quaternions of any length, such as rounded ones; False refuses those whose norm
-        is off 1 by more than 1e-3
-    **options : the scheme's own
+    hold : hold the first or last pose outside the domain of an open curve; False refuses such times
+    normalise : accept quaternions of any length, such as rounded ones; False refuses those whose norm
+        differs from 1 by more than 1e-3
+    **options : options of the scheme
 
     Raises
     ------
@@ -132,7 +132,7 @@ class Curve(abc.ABC):
             cls.name = Path(file).stem.replace("_", "-")
         stated = cls.__dict__.get("operations", UNSTATED)
         if not (isinstance(stated, Operations) or hasattr(stated, "__get__")):
-            raise TypeError(f"operations of {cls.name} is no Operations: {stated!r}")
+            raise TypeError(f"operations of {cls.name}: expected an Operations, found {stated!r}")
 
     def __init__(
         self,
@@ -159,7 +159,7 @@ class Curve(abc.ABC):
 
     @classmethod
     def from_keyframes(cls, keyframes: kf.Keyframes, *, hold: bool = False, **given: Any) -> Self:
-        """The curve of prepared keyframes: what the constructor does after validation."""
+        """Build the curve from prepared keyframes: what the constructor does after validation."""
         curve = cls.__new__(cls)
         curve._build(keyframes, given, hold)
         return curve
@@ -220,9 +220,9 @@ class Curve(abc.ABC):
 
     @property
     def engine(self) -> Literal["python", "compiled"] | None:
-        """What evaluates its orientations, where the scheme is written in kernels: "python" or "compiled".
+        """What evaluates the orientations of a scheme written in kernels: "python" or "compiled".
 
-        None where it is not, but has code of its own, in numpy or a library's.
+        None for schemes with their own code, in numpy or in a library.
         """
         return None
 
@@ -250,13 +250,13 @@ class Curve(abc.ABC):
 
         Parameters
         ----------
-        t : scalar or array S; an open curve refuses times outside its domain unless it holds, a
-            closed one wraps
+        t : scalar or array of shape S; an open curve refuses times outside its domain unless ``hold``
+            was set, a closed one wraps them
         order : 0 for unit quaternions S + (*K, 4); 1 for the angular velocity S + (*K, 3) in rad per
             time; 2 for the angular acceleration
-        out : float64 of exactly that shape, any strides; is filled and returned
-        frame : of the rates, "body" (default) or "world"
-        threads : for large t
+        out : float64 array of exactly that shape, with any strides; it is filled and returned
+        frame : frame of the rates, "body" (default) or "world"
+        threads : number of threads, useful for large t
 
         Raises
         ------
@@ -303,10 +303,10 @@ class Curve(abc.ABC):
         return out
 
     def log(self, t: ArrayLike) -> FloatArray:
-        """The log-curve ln q(t), S + (*K, 3): the principal logarithm of the curve's own sign.
+        """The log-curve ln q(t), S + (*K, 3): the principal logarithm, for the curve's own sign.
 
-        Where the curve runs straight through -1 (a spin about one axis through the identity) it goes
-        on past pi, anchored at ``domain[0]``.
+        Where the curve runs straight through -1 (a spin about one axis through the identity), the
+        logarithm continues past pi, anchored at ``domain[0]``.
 
         Examples
         --------

@@ -48,12 +48,16 @@ def shipped(folder: str) -> Path:
     return inside if inside.is_dir() else PACKAGE.parents[1] / folder
 
 
+def named(files: Sequence[Path]) -> Iterator[str]:
+    """The names of schemes in files, and of the entry points of `ENTRY_POINTS`."""
+    plugins: list[admission.Plugin] = [*files, *_entries()]
+    return (_named(plugin)[0] for plugin in plugins)
+
+
 def discover(files: Sequence[Path]) -> Iterator[Found]:
     """What is found in files, and at the entry points of `ENTRY_POINTS`."""
-    found = importlib.metadata.entry_points(group=ENTRY_POINTS)
-    entries = sorted(found, key=lambda entry: entry.name)
     ours = [path for path in files if _is_shipped(path)]
-    plugins: list[admission.Plugin] = [*(path for path in files if path not in ours), *entries]
+    plugins: list[admission.Plugin] = [*(path for path in files if path not in ours), *_entries()]
     refused = admission.refusals(plugins)
     for path in ours:
         yield replace(_from_file(path), shipped=True)
@@ -63,6 +67,11 @@ def discover(files: Sequence[Path]) -> Iterator[Found]:
             yield Found(*_named(plugin), None, refused[plugin], settled)
         else:
             yield _from_file(plugin) if isinstance(plugin, Path) else _from_entry(plugin)
+
+
+def _entries() -> list[importlib.metadata.EntryPoint]:
+    found = importlib.metadata.entry_points(group=ENTRY_POINTS)
+    return sorted(found, key=lambda entry: entry.name)
 
 
 def _is_shipped(path: Path) -> bool:
@@ -137,7 +146,7 @@ def _from_entry(entry: importlib.metadata.EntryPoint) -> Found:
 def _loaded(entry: importlib.metadata.EntryPoint) -> type[Curve]:
     scheme = entry.load()
     if not (isinstance(scheme, type) and issubclass(scheme, Curve)):
-        raise TypeError(f"no subclass of Curve: {scheme!r}")
+        raise TypeError(f"not a subclass of Curve: {scheme!r}")
     return scheme
 
 

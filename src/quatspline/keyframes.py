@@ -38,8 +38,8 @@ class Keyframes:
     times : (n,) or, closed, (n + 1,), as given (`stamps.stamps`); the last of a closed set is the return
     knots : float64 times since the first, (n,) or (n + 1,): all work is done in these
     spacings : float64 knot spacings h, one per segment: (n - 1,) or, closed, (n,)
-    flips : (K, n) float64, -1 where alignment turned a keyframe's sign round, otherwise 1
-    digits : dtype of the times as they were given
+    flips : (K, n) float64, -1 where alignment flipped a keyframe's sign, otherwise 1
+    digits : dtype of the given times
     tracks : (K, n, 4) float64, unit quaternions, neighbours on one hemisphere unless kept as given
     track_shape : the shape whose product is K; () for a single track
     closed : whether the last keyframe leads back to the first

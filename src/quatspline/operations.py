@@ -12,13 +12,13 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class Per:
-    """So many of one operation for each of these.
+    """How many of one operation each of these takes.
 
     Attributes
     ----------
     sample : an evaluated orientation
-    keyframe : of the set-up, one of many keyframes; NaN where a set-up is not counted
-    iteration : one of many keyframes in an update of an iteration, besides
+    keyframe : each keyframe of a long set-up; NaN if the set-up is not counted
+    iteration : in addition, each keyframe in each update of an iteration
 
     Examples
     --------
@@ -41,7 +41,7 @@ class Operations:
 
     Attributes
     ----------
-    slerps, exps, logs, roots : roots are square roots, also those within the others
+    slerps, exps, logs, roots : roots are square roots, including those inside the other operations
     others : counts of other operations by name
 
     Examples

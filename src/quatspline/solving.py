@@ -14,18 +14,18 @@ WRONG_FIXED_POINT = 1000.0
 
 @dataclass(frozen=True)
 class SolveReport:
-    """What an iterative solver did; fields have the shape of the tracks where there are several.
+    """What an iterative solver did; if there are several tracks, fields have their shape.
 
     Attributes
     ----------
     method, stop : the iteration, and the rule that ended it ("residual" or "change")
-    iterations : updates made, the accepting one included
-    change : relative change of all control quaternions by the last update
+    iterations : number of updates, including the accepted one
+    change : relative change of all control quaternions in the last update
     residual : largest miss at a keyframe, a rotation angle in rad: by the equations or by the finished
-        curve, measured on both sides, whichever is larger; infinite where it is no number; of a curve near
-        its keyframes, the last turn of the poses that it was solved for
-    converged : whether the stop rule was met at a right solution
-    tolerance : what was asked for
+        curve, measured on both sides, whichever is larger; infinite if it is not a number.  For a curve
+        that passes near its keyframes, the rotation of the solved poses in the last update
+    converged : whether the stopping rule was met at a correct solution
+    tolerance : the requested tolerance
 
     Examples
     --------
@@ -48,7 +48,7 @@ class SolveReport:
 
 
 class ConvergenceError(RuntimeError):
-    """A solve that did not converge; ``report`` is its `SolveReport`.
+    """A solver did not converge; ``report`` is its `SolveReport`.
 
     Examples
     --------

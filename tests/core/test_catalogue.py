@@ -225,7 +225,7 @@ import quatspline as qs
 from quatspline.catalogue import found
 print(found()["hold-example"].problem, "slerp" in qs.schemes())
 """
-    assert python(code, installed) == "TypeError: no subclass of Curve: 3 True"
+    assert python(code, installed) == "TypeError: not a subclass of Curve: 3 True"
 
 
 # -- imports ------------------------------------------------------------------------------------

@@ -83,9 +83,12 @@ def test_samples_far_outside_are_outside() -> None:
     [
         (np.array(["2024", "NaT", "2025", "2026"], "datetime64[D]"), r"^times\[1\] is not a time"),
         (np.array([0, 1, 2, 3], "timedelta64[M]"), r"^times: timedelta64\[M\] has no fixed length"),
-        ([datetime.timedelta(k) for k in (0, 1, 2)] + ["x"], r"^times\[3\] = 'x' is no time like"),
-        ([datetime.datetime(2024, 1, 1), None, 2, 3], r"^times\[1\] = None is no time like"),
-        ([datetime.datetime(2024, 1, 1), datetime.timedelta(1), 2, 3], r"^times\[1\] = .* no time"),
+        ([datetime.timedelta(k) for k in (0, 1, 2)] + ["x"], r"^times\[3\] = 'x': not a time like"),
+        ([datetime.datetime(2024, 1, 1), None, 2, 3], r"^times\[1\] = None: not a time like"),
+        (
+            [datetime.datetime(2024, 1, 1), datetime.timedelta(1), 2, 3],
+            r"^times\[1\] = .*: not a time",
+        ),
         (np.array([0, 1, 2, 2**64 - 1], np.uint64), r"^times\[3\] = 18446744073709551615: beyond"),
         (np.longdouble("1e400") * np.arange(1, 5), r"^times"),
         (NOW + np.array([0, 1, 1, 2]), rf"^times\[2\] = {NOW + 1} does not exceed times\[1\]"),

@@ -73,7 +73,7 @@ def test_many_keyframes_take_the_same_each() -> None:
 
 def test_counts_in_english_are_refused() -> None:
     with pytest.raises(
-        TypeError, match=r"operations of .* is no Operations: {'exps per sample': 3}"
+        TypeError, match=r"operations of .*: expected an Operations, found {'exps per sample': 3}"
     ):
 
         class Told(Curve):

@@ -117,10 +117,10 @@ def test_a_mirror_may_write_the_numbers_otherwise(server: Server, tmp_path: Path
 @pytest.mark.parametrize(
     ("name", "content", "short", "said"),
     [
-        ("a.amc", b"1\nroot 1 2.51 -3e1\n", False, "other numbers"),
+        ("a.amc", b"1\nroot 1 2.51 -3e1\n", False, "does not hold the numbers"),
         ("a.amc", None, False, "404"),
         ("a.amc", CLIPS["a.amc"], True, "not fetched whole"),
-        ("b.txt", b"<html>moved</html>", False, "other numbers"),
+        ("b.txt", b"<html>moved</html>", False, "does not hold the numbers"),
     ],
 )
 def test_a_failure_is_one_sentence_and_leaves_the_others(
@@ -191,7 +191,9 @@ def test_addresses_of_other_kinds_are_refused(
     mirror: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run(tmp_path / "m", "--from", mirror) == 2
-    assert f"--from {mirror}: an address that begins with http://" in capsys.readouterr().err
+    assert (
+        f"--from {mirror}: expected an address that begins with http://" in capsys.readouterr().err
+    )
     assert not (tmp_path / "m").exists()
 
 

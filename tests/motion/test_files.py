@@ -302,7 +302,7 @@ def test_stamps_beyond_64_bits_are_refused(tmp_path: Path) -> None:
 def test_stamps_that_float64_does_not_tell_apart_are_not_called_equal(tmp_path: Path) -> None:
     text = "1650000000.00000001,1,0,0,0\n1650000000.00000002,1,0,0,0\n"
     message = refusal(put(tmp_path, "k.csv", text))
-    assert "float64 does not tell them apart" in message
+    assert "float64 cannot tell them apart" in message
     assert "repeats" not in message
     text = "1650000000.5,1,0,0,0\n1650000000.50,1,0,0,0\n"
     assert "repeats the stamp before it" in refusal(put(tmp_path, "k.csv", text))
@@ -420,8 +420,8 @@ def test_a_last_row_near_the_first_is_told_apart(tmp_path: Path) -> None:
     q = np.array([QUATERNIONS[0], QUATERNIONS[1], QUATERNIONS[2], nearly])
     closed = returning(Motion(np.arange(4.0), q))
     assert closed.note == (
-        "closed: the last row is 0.0057 degrees from the first orientation: taken as a keyframe of its "
-        "own, the return follows one step later"
+        "closed: the last row is 0.0057 degrees from the first orientation; it is kept as a "
+        "keyframe, and the curve returns one step later"
     )
     assert (len(closed.stamps), len(closed.quaternions)) == (5, 4)
     with pytest.raises(ValueError, match=r"its return; the last row is 0\.0057 degrees from"):

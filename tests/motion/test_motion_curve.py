@@ -201,7 +201,7 @@ def test_a_rigid_change_of_the_world_moves_frame_and_origin_together(
 
 def test_positions_without_a_spline_have_no_origin() -> None:
     motion = rigid(False)
-    with pytest.raises(ValueError, match="the positions are no B-spline"):
+    with pytest.raises(ValueError, match="the positions are not a B-spline"):
         _ = motion.curve("kim").origin
     bare = qs.Motion(motion.stamps, motion.quaternions)
     with pytest.raises(ValueError, match="no positions"):

@@ -171,16 +171,16 @@ def test_csv_goes_in_and_comes_out(page: Opened, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("0,1,0,0,0", "Two lines at least"),
+        ("0,1,0,0,0", "At least two lines"),
         ("0,1,0,0,0\n0,0,1,0,0", "Keyframe 1: its time 0 does not come after 0"),
         ("0,1,0,0,0\n1,0,0,0,0", "Keyframe 1: its quaternion has no length"),
-        ("0,1,0,0,0\n1,a,0,0,0", "Keyframe 1: five numbers are expected"),
-        ("0,1,x,0,0\n1,1,0,0,0\n2,0,1,0,0", "Keyframe 0: five numbers are expected"),
-        ("0,1,0,0,0\n1,0,1,,0", "Keyframe 1: five numbers are expected"),
-        ("0,1,0,0,0\n1,0,nan,1,0", "Keyframe 1: five numbers are expected"),
+        ("0,1,0,0,0\n1,a,0,0,0", "Keyframe 1: expected five numbers"),
+        ("0,1,x,0,0\n1,1,0,0,0\n2,0,1,0,0", "Keyframe 0: expected five numbers"),
+        ("0,1,0,0,0\n1,0,1,,0", "Keyframe 1: expected five numbers"),
+        ("0,1,0,0,0\n1,0,nan,1,0", "Keyframe 1: expected five numbers"),
         ("0,1,0,0,0\n1e300,0,1,0,0", "Keyframe 1: its time 1e+300 is beyond"),
-        ("t,a,b,c\n0,1,0,0\n1,1,0,0", "names no column w, x, y, z"),
-        ("", "Two lines at least"),
+        ("t,a,b,c\n0,1,0,0\n1,1,0,0", "does not name w, x, y, z"),
+        ("", "At least two lines"),
     ],
 )
 def test_what_cannot_be_a_curve_is_refused_in_a_sentence(

@@ -422,7 +422,10 @@ def test_a_run_leaves_a_page_that_is_not_its_own(
     page.write_text("by hand")
     assert running.run(["small"], out=small) == []
     assert page.read_text() == "by hand"
-    assert f"{page}: not of this folder's runs, so it was left as it is" in capsys.readouterr().err
+    assert (
+        f"{page}: not written by a run in this folder, so it was left as it is"
+        in capsys.readouterr().err
+    )
     assert "report.html: not written by quatspline" in refusal(small, capsys, left=True)
     assert main(["report", "--out", str(small), "--force"]) == 0
     assert "csv-small" in page.read_text(encoding="utf-8")

@@ -42,7 +42,7 @@ def test_a_hold_is_said_with_what_schemes_turn_meanwhile() -> None:
     turned = frame.set_index("scheme")["hold_rotation"]
     assert turned[["slerp", "monotone-quintic"]].tolist() == [0.0, 0.0]
     assert warned(TIMES, q, frame) == [
-        "Warning: keyframes 2 and 3 (2.5 s and 4 s after the first) are equal: while they stand still, local-quintic "
+        "Warning: keyframes 2 and 3 (2.5 s and 4 s after the first) are equal. While the keyframes hold, local-quintic "
         f"(ours) turns up to {turned['local-quintic']:.3g} degrees away, monotone-quintic (ours) 0, slerp 0."
     ]
 
@@ -50,7 +50,9 @@ def test_a_hold_is_said_with_what_schemes_turn_meanwhile() -> None:
 def test_many_holds_of_a_recording_are_repeated_samples() -> None:
     q = spin(*np.repeat(np.arange(0.0, 15.0), 2))
     (line,) = warned(np.arange(30) / 10.0, q)
-    assert line.startswith("Warning: 15 of 29 steps do not turn at all, as where samples are rep")
+    assert line.startswith(
+        "Warning: 15 of 29 steps do not turn at all, as if samples were repeated."
+    )
 
 
 def test_a_body_at_rest_throughout_is_no_hold() -> None:
@@ -61,12 +63,13 @@ def test_a_gap_and_almost_a_duplicate_are_said_with_their_lengths() -> None:
     q = spin(0, 20, 30, 40, 50)
     (line,) = warned([0.0, 1.0, 2.5, 14.5, 16.0], q)
     assert line == (
-        "Warning: a gap of 12 s between keyframes 2 and 3 (2.5 s and 14.5 s after the first), 8 times the median "
-        "spacing: what a curve does there is its own invention."
+        "Warning: there is a gap of 12 s between keyframes 2 and 3 (2.5 s and 14.5 s after the first), 8 times the "
+        "median spacing. The keyframes do not say what happens there, so every curve invents it."
     )
     (line,) = warned([0.0, 1.0, 1.005, 2.1, 3.0], q)
     assert (
-        "keyframes 1 and 2 (1 s and 1.005 s after the first) are almost duplicates, 0.005 s" in line
+        "keyframes 1 and 2 (1 s and 1.005 s after the first) are almost duplicates: they are 0.005 s"
+        in line
     )
 
 
@@ -79,10 +82,10 @@ def test_a_long_hold_is_no_gap() -> None:
     ("degrees", "said"),
     [
         (119.0, None),
-        (125.0, "is 125 degrees: schemes differ most where steps are that wide"),
-        (179.25, "is 179.2 degrees: 0.75 more, and it goes the other way round."),
-        (180.0, "is exactly half a turn, so that rounding decides which way round it goes."),
-        (181.0, "is 179 degrees: 1 more"),
+        (125.0, "is 125 degrees. Schemes differ most on such large steps"),
+        (179.25, "is 179.2 degrees. With 0.75 more, the curve would turn the other way."),
+        (180.0, "is exactly half a turn, so rounding decides which way the curve turns."),
+        (181.0, "is 179 degrees. With 1 more"),
     ],
 )
 def test_wide_steps_and_half_turns(degrees: float, said: str | None) -> None:
@@ -103,13 +106,13 @@ def test_the_step_that_closes_counts() -> None:
 @pytest.mark.parametrize(
     ("times", "said"),
     [
-        (np.arange(5), "count 0, 1, 2 ... 4 as frame numbers do"),
-        (1000 + np.arange(5), "as frame numbers do"),
+        (np.arange(5), "the times are 0, 1, 2 ... 4, like frame numbers"),
+        (1000 + np.arange(5), "like frame numbers"),
         (
             1_700_000_000_000_000_000 + 5_000_000 * np.arange(5),
-            "are 5000000 apart (median) as nanoseconds are at 200 Hz",
+            "are 5000000 apart (median), like nanoseconds at 200 Hz",
         ),
-        (10_000.0 * np.arange(5), "as microseconds are at 100 Hz"),
+        (10_000.0 * np.arange(5), "like microseconds at 100 Hz"),
         (60.0 * np.arange(5), None),
         (0.5 * np.arange(5), None),
     ],
@@ -130,9 +133,8 @@ def test_seconds_are_those_of_the_unit_that_was_told() -> None:
 def test_a_motion_that_ends_where_it_began_closes() -> None:
     """As a camera's loop in a CSV does: a turn, and a swing to and fro."""
     said = (
-        "Warning: the last keyframe is 0 degrees from the first, 5 s later: the motion closes. If it goes on from "
-        "there as it began, say --closed, which takes the last row for the return; without it the curve has two ends "
-        "there."
+        "Warning: the last keyframe repeats the first, 5 s later. For a loop, use --closed, "
+        "which takes the last row as the return."
     )
     assert warned(TIMES, spin(0, 90, 180, 270, 360)) == [said]
     assert warned(TIMES, spin(10, 30, 50, 30, 10)) == [said]
@@ -154,13 +156,13 @@ def test_ends_that_nearly_meet(degrees: tuple[float, ...], said: str | None) -> 
     assert len(lines) == (said is not None)
     for line in lines:
         assert str(said) in line
-        assert "--closed, which asks that its last row repeat the first" in line
+        assert "--closed, which needs a last row that repeats the first" in line
 
 
 def test_a_walk_that_stays_near_its_beginning_does_not_close() -> None:
     rng = np.random.default_rng(1)
     shaken = quaternion.exp(0.5 * np.radians(0.5) * rng.normal(size=(200, 3)))
-    assert not any("closes" in line for line in warned(np.arange(200) / 50.0, shaken))
+    assert not any("loop" in line for line in warned(np.arange(200) / 50.0, shaken))
 
 
 def test_noise_is_said_of_recordings_and_not_of_walks() -> None:

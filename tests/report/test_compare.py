@@ -130,8 +130,8 @@ def test_a_failure_that_readers_know_is_said(
         assert told[0].startswith(head)
         assert told[-1] == (
             "Not measured: nielson (the published iteration did not converge: after 77 iterations it still misses "
-            "keyframes by 0.3 rad; nor did Newton's method: after 77 iterations it still misses keyframes by more "
-            "than can be told)."
+            "keyframes by 0.3 rad; nor did Newton's method: after 77 iterations it still misses keyframes by an "
+            "unknown amount)."
         )
         written = (out / "recommendation.md").read_text().splitlines()
         assert written[2:] == [f"- {line}" for line in told]
@@ -183,15 +183,15 @@ def test_a_scheme_is_judged_and_not_its_iteration() -> None:
         row["note"],
     )
     assert pd.isna(table.loc["kim", "note"])
-    assert f"Of nielson: {row['note']}." in advice(table.reset_index())
+    assert f"Note on nielson: {row['note']}." in advice(table.reset_index())
 
 
 @pytest.mark.parametrize(
     ("change", "residual", "said"),
     [
         (7.17e-17, 0.311, "it still misses keyframes by 0.31 rad"),
-        (0.157, np.inf, "it still misses keyframes by more than can be told"),
-        (0.157, np.nan, "it still misses keyframes by more than can be told"),
+        (0.157, np.inf, "it still misses keyframes by an unknown amount"),
+        (0.157, np.nan, "it still misses keyframes by an unknown amount"),
         (1.22e-7, 1e-15, "it has not settled: the last changed it by 1e-07 of its size"),
         (np.inf, 1e-15, "its numbers overflow"),
     ],
@@ -216,7 +216,7 @@ def test_a_curve_that_turns_round_and_round_is_said_to() -> None:
     table = qs.compare([0, 10, 10.02, 20], keyframes, ["quartic"])
     lines = advice(table)
     assert lines[1:] == [
-        "It turns 272 rad where the keyframes need 1.29.",
+        "It turns 272 rad, although the keyframes need only 1.29 rad.",
         "While the keyframes stand still, it turns up to 358 degrees away; no candidate stands still.",
     ]
 
@@ -318,7 +318,7 @@ def test_the_command_takes_needs_in_seconds(
         assert lines[0].startswith("Warning: keyframes 1 and 2 (1 s and 1.5 s after the first)")
         assert lines[1].startswith(taken)
         page = (out / "report.html").read_text(encoding="utf-8")
-        assert "while they stand still" in page
+        assert "While the keyframes hold" in page
         assert lines[-1] not in page  # a line of the table, which the page has whole
     table = pd.read_csv(tmp_path / "200" / "compare.csv").set_index("scheme")
     peak = 1000 * table["peak_rate"].to_dict()["slerp"]  # of degrees a millisecond

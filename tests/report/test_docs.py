@@ -26,10 +26,11 @@ from quatspline.options import declared_by
 from quatspline.page.glossary import column
 from quatspline.runs.experiment import files
 from quatspline.segments import SegmentCurve
-from tools.derivations import PREFIX, SHOWN, drawn
+from tools.derivations import PREFIX, drawn
 from tools.new_scheme import COMPILED, new_scheme
 from tools.readme import DOCS, QUOTING, REFERENCE, ROBOT, ROOT, compare_block, derivations
 from tools.robot import robot
+from tools.shown import SHOWN, walked
 from walks import inside, uneven, walk
 
 SOURCE_LINK = re.compile(r"\]\(([^)#:]+)(?:#[^)]*)?\)")
@@ -365,3 +366,50 @@ def test_tables_that_pages_cite_exist() -> None:
         cited = set(re.findall(r"results/([\w-]+\.csv)", text))
         assert cited <= known, (page.name, cited - known)
         assert "the results tables" not in text, page.name
+
+
+def test_nielson_is_shown_where_it_jumps_most() -> None:
+    """As the caption says: of ten walks, one of which is not solved, by a component's jump over its largest value."""
+    shown = SHOWN["nielson"]
+    page = (DOCS / "mathematics" / "nielson.md").read_text(encoding="utf-8")
+    sets = [walked(seed, 6, 120.0, (3.0, 1.0, 1.0))() for seed in range(10)]
+    jumps = [_jump_shares(*keyframes) for keyframes in sets]
+    assert [found is None for found in jumps].count(True) == 1
+    largest = max((found for found in jumps if found is not None), key=np.max)
+    times, q = shown.keyframes()
+    np.testing.assert_array_equal(largest, _jump_shares(times, q))
+    knot, component = np.unravel_index(np.argmax(largest), largest.shape)
+    assert component == shown.component
+    assert f"most at {times[1 + knot]:g};" in page
+    assert f"{100.0 * largest.max():.0f} %" in page
+
+
+def _jump_shares(times: np.ndarray, q: np.ndarray) -> np.ndarray | None:
+    """Of the acceleration's components at inner keyframes, over their largest values; None where unsolved."""
+    try:
+        curve = qs.build("nielson", times, q)
+    except qs.ConvergenceError:
+        return None
+    knots, beside = times[1:-1], 1e-6
+    jumps = np.abs(curve(knots + beside, 2) - curve(knots - beside, 2))
+    return jumps / np.abs(curve(curve.keyframes.inside(120), 2)).max(axis=0)
+
+
+def test_a_keyframe_looks_the_same_on_every_page() -> None:
+    seen: dict[str, set[tuple[object, object]]] = {}
+    for shown in SHOWN.values():
+        left = drawn(shown).axes[0]
+        for text, line in zip(left.texts, left.lines, strict=True):
+            look = (line.get_color(), line.get_linestyle())
+            seen.setdefault(text.get_text().lstrip("$qL"), set()).add(look)
+            assert text.get_color() == line.get_color()
+    assert all(len(looks) == 1 for looks in seen.values()), seen
+
+
+@pytest.mark.parametrize("page", sorted(SHOWN))
+def test_curves_differ_in_grey_print(page: str) -> None:
+    """In their dashes, which the lines to their names have, too."""
+    right = drawn(SHOWN[page]).axes[1]
+    names = [text for text in right.texts if text.arrow_patch is not None]
+    dashes = {str(text.arrow_patch.get_linestyle()) for text in names}
+    assert len(dashes) == len(names) == len(SHOWN[page].curves)

@@ -59,7 +59,7 @@ CALM = {"torque": 2.0}
             Needs(max_accel=60.0),
             {"peak_acceleration": float("inf")},
             "50.0 deg/s^2 (--max-accel 60)",
-            "--max-accel 60: a, without bound.",
+            "--max-accel 60: a, unbounded.",
         ),
         (
             Needs(max_excursion=5.0),
@@ -75,7 +75,7 @@ def test_what_breaks_a_need_is_not_taken_and_is_named_with_its_value(
     assert told(Needs(), a=bad | {"continuity": 2}, b=CALM)[0].startswith("Take a: ")
     lines = told(needs, a=bad, b=CALM)
     assert lines[0].startswith("Take b: ")
-    assert lines[1] == f"It meets what was asked for: {met}."
+    assert lines[1] == f"It meets your needs: {met}."
     assert f"Ruled out by {broken}" in lines
 
 
@@ -112,7 +112,7 @@ def test_the_nearest_is_named_where_none_meets_all() -> None:
         late={"peak_rate": 10.5, "lookahead": "3"},
     )
     assert lines[0] == (
-        "No scheme measured meets all that was asked for (--smooth 2, --causal 1, --max-rate 10). The nearest is "
+        "No scheme measured meets your needs (--smooth 2, --causal 1, --max-rate 10). The nearest is "
         "near: 11.0 deg/s (--max-rate 10)."
     )
     assert lines[1:] == [

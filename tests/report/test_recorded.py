@@ -59,7 +59,7 @@ def test_what_nobody_recorded_is_told() -> None:
     worth = SENTENCES[0][1]
     assert "40 recorded joints are off" in text(worth, ledger(["a.bvh"]))
     made = text(worth, ledger([OWN]))
-    assert "the 40 joints of the walk that this project's generator made" in made
+    assert "the 40 joints of the walk that this project generates" in made
     assert "recorded joints" not in made
 
 

@@ -26,25 +26,25 @@ TAKEN = {
     "two-keyframes": "local-quintic (ours)",
 }
 WARNED = {
-    "camera-path": ["as frame numbers do"],
-    "spacecraft-with-holds": ["are equal (the first of # holds): while they stand still"],
+    "camera-path": ["like frame numbers"],
+    "spacecraft-with-holds": ["are equal (the first of # holds). While the keyframes hold"],
     "noisy-slam": ["degrees of noise about each axis"],
-    "walk-cycle": ["the motion closes"],
-    "turntable": ["the motion closes"],
-    "hinge": ["are equal: while they stand still", "the motion closes"],
+    "walk-cycle": ["For a loop, use --closed"],
+    "turntable": ["For a loop, use --closed"],
+    "hinge": ["are equal. While the keyframes hold", "For a loop, use --closed"],
     "closed-loop": ["step between keyframes # and #"],
-    "two-keyframes": ["it goes the other way round"],
+    "two-keyframes": ["the curve would turn the other way"],
 }
 REASONS = {
     "robot-waypoints": "Ruled out by --max-rate #: monotone-quintic (ours), # deg/s",
-    "camera-path": "It meets what was asked for: C# (--smooth #), shaped by # keyframes (--local).",
+    "camera-path": "It meets your needs: C# (--smooth #), shaped by # keyframes (--local).",
     "spacecraft-with-holds": "It stands still where the keyframes do.",
     "noisy-slam": "If the curve must pass through the keyframes, noise and all, take local-quintic (ours)",
-    "walk-cycle": "and a changed keyframe changes the curve nearby only.",
+    "walk-cycle": "and is local: edits stay nearby.",
     "turntable": "the keyframes turn about one axis at a constant rate. Any of them will do.",
     "hinge": "Ruled out by --max-excursion #: ",
-    "drone": "It meets what was asked for: waits for # keyframe (--causal #).",
-    "closed-loop": "has # times the least torque of all that pass through the keyframes",
+    "drone": "It meets your needs: waits for # keyframe (--causal #).",
+    "closed-loop": "has # times the least torque of all schemes that pass through the keyframes",
     "two-keyframes": "about one axis at a constant rate",
 }
 

@@ -89,8 +89,8 @@ def test_list_imports_no_table_no_figure() -> None:
         (["lisst"], "invalid choice: 'lisst'"),
         (["list", "--all"], "unrecognized arguments: --all"),
         (["run", "--quick", "--full"], "not allowed with argument"),
-        (["run", "--seed", "-1"], "argument --seed: '-1': a whole number, at least 0, is expected"),
-        (["run", "--jobs", "0"], "argument --jobs: '0': a whole number, at least 1, is expected"),
+        (["run", "--seed", "-1"], "argument --seed: '-1': expected a whole number, at least 0"),
+        (["run", "--jobs", "0"], "argument --jobs: '0': expected a whole number, at least 1"),
         (["run", "--jobs", "2", "--dask", "tcp://a:1"], "not allowed with argument"),
         (["run", "missing"], "unknown experiment 'missing'"),
         (["run", "erors"], "unknown experiment 'erors': did you mean 'errors'?"),
@@ -102,13 +102,22 @@ def test_list_imports_no_table_no_figure() -> None:
         (["sample", "k.csv", "--scheme", "stairs"], "one of the arguments --rate --count"),
         (["sample", "k.csv", "--rate", "2"], "required: --scheme"),
         (["sample", "k.csv", "--scheme", "stares", "--count", "2"], "did you mean 'stairs'?"),
-        (["sample", "k.csv", "--scheme", "stairs", "--count", "0"], "at least 1, is expected"),
-        (["sample", "k.csv", "--scheme", "stairs", "--rate", "nan"], "a positive number is"),
-        (["sample", "k.csv", "--scheme", "stairs", "--rate", "fast"], "'fast': a positive number"),
+        (
+            ["sample", "k.csv", "--scheme", "stairs", "--count", "0"],
+            "expected a whole number, at least 1",
+        ),
+        (["sample", "k.csv", "--scheme", "stairs", "--rate", "nan"], "expected a positive number"),
+        (
+            ["sample", "k.csv", "--scheme", "stairs", "--rate", "fast"],
+            "'fast': expected a positive number",
+        ),
         (["sample", "k.csv", "--scheme", "stairs", "--rate", "1e308"], "samples are too many"),
         (["sample", "k.csv", "--scheme", "stairs", "--count", "10000000000"], "are too many"),
         (["sample", "k.csv", "--scheme", "stairs", "--count", "1" + 400 * "0"], "a whole number"),
-        (["sample", "k.csv", "--scheme", "stairs", "--count", "1_0"], "'1_0': a whole number"),
+        (
+            ["sample", "k.csv", "--scheme", "stairs", "--count", "1_0"],
+            "'1_0': expected a whole number",
+        ),
         (["run", 5000 * "x"], "xxx..."),
         (["info", "\x1b[31m.csv"], r"quatspline: \x1b[31m.csv: cannot be read: No such file"),
         (["sample", "no.csv", "--scheme", "stairs", "--count", "2"], "no.csv: cannot be read"),
@@ -327,8 +336,8 @@ def test_sample_tells_which_reading_of_a_closed_motion_was_taken(desk: Desk) -> 
     assert done.returncode == 0
     assert done.stdout.splitlines()[-1] == "4.0,1.0,0.0,0.0,0.0"
     assert done.stderr == (
-        f"quatspline: {path}: closed: the last row is 0.011 degrees from the first orientation: taken "
-        "as a keyframe of its own, the return follows one step later\n"
+        f"quatspline: {path}: closed: the last row is 0.011 degrees from the first orientation; it "
+        "is kept as a keyframe, and the curve returns one step later\n"
     )
 
 
@@ -544,7 +553,7 @@ def interrupted(desk: Desk) -> None:
     done = desk("run", "first", "second")
     assert done.returncode == 130
     assert done.stderr.splitlines()[1:] == [
-        "quatspline: interrupted: the same command goes on where it stopped"
+        "quatspline: interrupted: the same command resumes where it stopped"
     ]
     assert (desk.folder / "results" / ".journal.json").is_file()
     assert desk.manifest()["end"] is None

@@ -39,7 +39,7 @@ WAITS = {
 """What a cell is at; one that swallows interrupts has to be cut off."""
 
 RUN = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL]
-LINE = "quatspline: interrupted: the same command goes on where it stopped"
+LINE = "quatspline: interrupted: the same command resumes where it stopped"
 
 
 @pytest.fixture(autouse=True)

@@ -76,7 +76,7 @@ def test_compare_never_writes_over_its_keyframes(
     os.link("compare.csv", "hard.csv")
     for out in (".", "out/.."):
         told = refused("compare", way, "--schemes", "slerp", "--out", out, *force)
-        assert told.startswith(f"{way}: is read here, so it is not written over")
+        assert told.startswith(f"{way}: is also read here, so it is not overwritten")
     assert (desk / "compare.csv").read_text() == KEYS
 
 
@@ -123,7 +123,7 @@ def test_sample_never_writes_over_its_keyframes(desk: Path, refused: Refused, wa
     (desk / "soft.csv").symlink_to("compare.csv")
     os.link("compare.csv", "hard.csv")
     told = refused("sample", "compare.csv", "--scheme", "slerp", "--count", "2", "-o", way)
-    assert told == f"{way}: is read here, so it is not written over"
+    assert told == f"{way}: is also read here, so it is not overwritten"
     assert (desk / "compare.csv").read_text() == KEYS
 
 

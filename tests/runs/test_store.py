@@ -145,7 +145,7 @@ def test_a_link_is_a_foreign_file_and_nothing_is_written_through_it(
 
 def test_a_folder_where_a_file_is_to_be_written_is_refused(folder: Path) -> None:
     (folder / "b.csv").mkdir()
-    with pytest.raises(ValueError, match=r"b\.csv: is no plain file"):
+    with pytest.raises(ValueError, match=r"b\.csv: not a regular file"):
         run(folder, "a", "b", force=True)
 
 
@@ -159,7 +159,7 @@ def test_what_is_read_is_never_written_even_by_force(folder: Path) -> None:
         folder / "hard.csv",
         folder / "soft.csv",
     ):
-        with pytest.raises(ValueError, match="is read here, so it is not written over"):
+        with pytest.raises(ValueError, match="is also read here, so it is not overwritten"):
             results.guard(["a.csv"], inputs=[given])
     results.guard(["a.md"], inputs=[folder / "a.csv"])
 

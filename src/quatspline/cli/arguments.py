@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, Literal, NoReturn
 
 from quatspline import __version__
+from quatspline.cli import completion
 from quatspline.system.atomic import naming
 from quatspline.system.sentence import MOST as SENTENCE
 from quatspline.system.sentence import one_line
@@ -23,7 +24,7 @@ REFUSED = 2
 
 
 class _Parser(argparse.ArgumentParser):
-    """Tells bad usage in one line, and what follows its help when that is asked for."""
+    """Reports bad usage in one line; its help may end with a closing text."""
 
     closing: Callable[[], str] | None = None
 
@@ -48,12 +49,13 @@ class _Parser(argparse.ArgumentParser):
 
 def parser() -> argparse.ArgumentParser:
     """The parser of all commands; ``name`` is the command's."""
-    whole = _Parser(prog="quatspline", description="The benchmark of orientation interpolation.")
+    whole = _Parser(prog="quatspline", description="A benchmark of orientation interpolation.")
     whole.add_argument("--version", action="version", version=f"quatspline {__version__}")
     commands = whole.add_subparsers(metavar="COMMAND", required=True, dest="name")
-    commands.add_parser("list", help="schemes and what they claim")
-    options = commands.add_parser("options", help="the options of a scheme")
-    options.add_argument("scheme", metavar="SCHEME", help="see quatspline list")
+    commands.add_parser("list", help="list the schemes and what they claim")
+    options = commands.add_parser("options", help="show the options of a scheme")
+    known = options.add_argument("scheme", metavar="SCHEME", help="see quatspline list")
+    _completed(known, completion.schemes)
     _add_run(commands)
     _add_compare(commands)
     _add_sample(commands)
@@ -61,29 +63,37 @@ def parser() -> argparse.ArgumentParser:
     _add_info(commands)
     _add_motions(commands)
     _add_report(commands)
-    commands.add_parser("warmup", help="compile everything once, so that nothing waits later")
+    commands.add_parser(
+        "warmup", help="compile everything now, so that later commands need not wait"
+    )
     return whole
 
 
 def _add_run(commands: Any) -> None:
     run = commands.add_parser(
         "run",
-        help="experiments: tables, figures and a manifest",
-        description="Run experiments: by default all, the paper's in full and the others at quick "
-        "size. A run that was interrupted goes on where it stopped when started alike.",
+        help="run experiments: tables, figures and a manifest",
+        description="Run experiments. By default all are run, the paper's at full size and the others at quick "
+        "size. The same command resumes an interrupted run where it stopped.",
     )
     run.closing = _experiments
-    run.add_argument("experiments", nargs="*", metavar="EXPERIMENT", help="by default all")
+    which = run.add_argument("experiments", nargs="*", metavar="EXPERIMENT", help="default: all")
+    _completed(which, completion.experiments)
     _add_schemes(run)
     size = run.add_mutually_exclusive_group()
-    size.add_argument("--quick", dest="size", action="store_const", const="quick")
-    size.add_argument("--full", dest="size", action="store_const", const="full")
-    run.add_argument("--out", type=Path, default=Path("results"), metavar="DIR", help="%(default)s")
+    few, many = "few cases and short rounds", "the sizes that docs and findings quote"
+    size.add_argument("--quick", dest="size", action="store_const", const="quick", help=few)
+    size.add_argument("--full", dest="size", action="store_const", const="full", help=many)
+    out = "folder to write to; default: %(default)s"
+    run.add_argument("--out", type=Path, default=Path("results"), metavar="DIR", help=out)
     _add_force(run)
-    run.add_argument("--seed", type=_seed, default=0, metavar="N", help="%(default)s")
+    seed = "seed of random numbers; default: %(default)s"
+    run.add_argument("--seed", type=_seed, default=0, metavar="N", help=seed)
     where = run.add_mutually_exclusive_group()
-    where.add_argument("--jobs", type=_count, metavar="N", help="processes; by default one a core")
-    where.add_argument("--dask", metavar="ADDRESS", help="a Dask scheduler that measures instead")
+    jobs = "number of processes; default: one per core"
+    where.add_argument("--jobs", type=_count, metavar="N", help=jobs)
+    dask = "measure on the Dask cluster of this scheduler instead"
+    where.add_argument("--dask", metavar="ADDRESS", help=dask)
 
 
 def _experiments() -> str:
@@ -98,20 +108,22 @@ def _experiments() -> str:
 
 
 def _first_line(path: Path) -> str:
-    """What a file says of itself; nothing where it is no Python."""
+    """The first line of a file's docstring; nothing if it is not Python."""
     with suppress(SyntaxError, ValueError):
         return (ast.get_docstring(ast.parse(path.read_bytes())) or "").partition("\n")[0]
     return ""
 
 
 def _add_compare(commands: Any) -> None:
-    compare = commands.add_parser("compare", help="schemes on your own keyframes")
+    compare = commands.add_parser("compare", help="compare schemes on your own keyframes")
     _add_keyframes(compare, nargs="?")  # it may stand behind the words of --schemes
     _add_schemes(compare)
     _add_option(compare, "of those schemes that have it")
-    kept = "take every K-th frame for a keyframe, and measure at the frames left out"
+    kept = "use every K-th frame as a keyframe, and measure at the frames left out"
     compare.add_argument("--keep", type=_count, metavar="K", help=kept)
-    where = "for tables, figures and the page; by default KEYFRAMES-compared here"
+    where = (
+        "folder for tables, figures and the page; default: KEYFRAMES-compared in the current folder"
+    )
     compare.add_argument("--out", type=Path, metavar="DIR", help=where)
     _add_needs(compare)
     _add_force(compare)
@@ -120,87 +132,93 @@ def _add_compare(commands: Any) -> None:
 def _add_needs(compare: argparse.ArgumentParser) -> None:
     """What a scheme must have to be recommended."""
     needs = compare.add_argument_group(
-        "needs", "Schemes that lack one are not recommended, and are named with what they have."
+        "needs",
+        "A scheme that fails to meet a need is not recommended, and is listed with its value.",
     )
-    needs.add_argument("--smooth", type=int, choices=(0, 1, 2), help="k of C^k, as measured")
-    local = "a changed keyframe changes the curve nearby only"
+    smooth = "the curve is C^k with at least this k, as measured"
+    needs.add_argument("--smooth", type=int, choices=(0, 1, 2), help=smooth)
+    local = "a changed keyframe changes the curve only nearby"
     needs.add_argument("--local", action="store_true", help=local)
-    causal = "keyframes after a segment's own two that a curve may wait for"
+    causal = "a segment may wait for at most N keyframes after its own two"
     needs.add_argument("--causal", type=_frames, metavar="N", help=causal)
     for name, unit in (("rate", "degrees/s"), ("accel", "degrees/s^2")):
-        told = f"the largest |{'omega' if name == 'rate' else 'alpha'}|, {unit}"
+        told = f"the largest |{'omega' if name == 'rate' else 'alpha'}| allowed, in {unit}"
         needs.add_argument(f"--max-{name}", type=_rate, metavar="DEG", help=told)
-    off = "how far the curve may leave the arcs between keyframes, degrees"
+    off = "how far the curve may leave the arcs between keyframes, in degrees"
     needs.add_argument("--max-excursion", type=_least, metavar="DEG", help=off)
-    unit = "what the file's times count, such as ms or '1/30 s'; by default seconds, or what the file says"
+    unit = "the unit of the file's times, such as ms or '1/30 s'; default: seconds, or what the file says"
     needs.add_argument("--time-unit", type=_unit, metavar="UNIT", help=unit)
 
 
 def _add_sample(commands: Any) -> None:
-    sample = commands.add_parser("sample", help="a scheme's curve through keyframes, sampled")
+    sample = commands.add_parser("sample", help="sample a scheme's curve through keyframes")
     _add_keyframes(sample)
-    sample.add_argument("--scheme", required=True, metavar="S", help="see quatspline list")
+    known = sample.add_argument("--scheme", required=True, metavar="S", help="see quatspline list")
+    _completed(known, completion.schemes)
     grid = sample.add_mutually_exclusive_group(required=True)
     grid.add_argument("--rate", type=_rate, metavar="HZ", help="samples per second")
     grid.add_argument(
-        "--count", type=_count, metavar="N", help="samples in all, both ends included"
+        "--count", type=_count, metavar="N", help="total number of samples, including both ends"
     )
-    grid.add_argument("--at", metavar="FILE", help="at the times of another motion file")
+    grid.add_argument("--at", metavar="FILE", help="sample at the times of another motion file")
     _add_option(sample, "of the scheme")
-    signs = "keep the signs of the quaternions, which may go the long way round"
+    signs = "keep the signs of the quaternions; steps may then go the long way round"
     sample.add_argument("--no-align", dest="align", action="store_false", help=signs)
-    held = "the first and last pose outside the keyframes' times"
+    held = "hold the first and last pose outside the keyframes' times"
     sample.add_argument("--hold", action="store_true", help=held)
-    along = "how positions go: matched (to the scheme), linear, catmull-rom, cubic, ..."
+    along = "curve for the positions: matched (to the scheme), linear, catmull-rom, cubic, ..."
     sample.add_argument("--positions", default="matched", metavar="FAMILY", help=along)
-    sample.add_argument("-o", dest="file", metavar="FILE", help="by default CSV on stdout")
+    out = "file to write; default: CSV on stdout"
+    sample.add_argument("-o", dest="file", metavar="FILE", help=out)
 
 
 def _add_reduce(commands: Any) -> None:
     reduce = commands.add_parser(
-        "reduce", help="the frames of a dense motion from which a scheme rebuilds it"
+        "reduce", help="find the frames of a dense motion from which a scheme rebuilds it"
     )
     _add_file(reduce)
-    bound = "the largest angle at a frame left out: 0.5deg, 0.01rad"
+    bound = "the largest angle allowed at a frame left out, such as 0.5deg or 0.01rad"
     reduce.add_argument("--error", type=_angle, required=True, metavar="ANGLE", help=bound)
-    reduce.add_argument("--scheme", default="slerp", metavar="S", help="%(default)s")
+    scheme = "the scheme that rebuilds the motion; default: %(default)s"
+    known = reduce.add_argument("--scheme", default="slerp", metavar="S", help=scheme)
+    _completed(known, completion.schemes)
     _add_option(reduce, "of the scheme")
-    together = "one set of frames for all joints, not one each"
+    together = "use one set of frames for all joints instead of one per joint"
     reduce.add_argument("--together", action="store_true", help=together)
-    out = "keyframes by joint (.csv, .npz), or the motion rebuilt at its frames (.bvh, .glb)"
+    out = "file for the keyframes of each joint (.csv, .npz) or for the rebuilt motion (.bvh, .glb)"
     reduce.add_argument("-o", dest="file", metavar="FILE", help=out)
 
 
 def _add_info(commands: Any) -> None:
-    info = commands.add_parser("info", help="what a motion file is: tracks, rate, gaps, noise")
+    info = commands.add_parser("info", help="describe a motion file: tracks, rate, gaps, noise")
     _add_file(info)
 
 
 def _add_motions(commands: Any) -> None:
     motions = commands.add_parser(
-        "motions", help="fetch the recorded clips that experiments measure on"
+        "motions", help="download the recorded clips on which experiments measure"
     )
+    into = "folder to write to; default: %(default)s"
     motions.add_argument(
-        "folder", nargs="?", type=Path, default=Path("motions"), metavar="DIR", help="%(default)s"
+        "folder", nargs="?", type=Path, default=Path("motions"), metavar="DIR", help=into
     )
-    mirror = "a folder on the web that has all files by name, instead of their sources"
+    mirror = "download from this web folder, which has all files by name, instead of the original sources"
     motions.add_argument("--from", dest="mirror", metavar="ADDRESS", help=mirror)
-    replaced = "replace files of these names that hold something else"
+    replaced = "replace files that have these names but different content"
     motions.add_argument("--force", action="store_true", help=replaced)
 
 
 def _add_report(commands: Any) -> None:
-    report = commands.add_parser("report", help="the page that shows the results")
-    report.add_argument(
-        "--out", type=Path, default=Path("results"), metavar="DIR", help="%(default)s"
-    )
+    report = commands.add_parser("report", help="write the page that shows the results")
+    out = "folder of the results; default: %(default)s"
+    report.add_argument("--out", type=Path, default=Path("results"), metavar="DIR", help=out)
     _add_force(report)
-    report.add_argument("--open", action="store_true", help="in the browser")
+    report.add_argument("--open", action="store_true", help="open the page in the browser")
 
 
 def _add_keyframes(parser: argparse.ArgumentParser, nargs: Literal["?"] | None = None) -> None:
     _add_file(parser, nargs)
-    closing = "a closed curve: the last row repeats the first orientation, or times are uniform"
+    closing = "make a closed curve; the last row must repeat the first orientation, or times must be uniform"
     parser.add_argument("--closed", action="store_true", help=closing)
 
 
@@ -211,30 +229,38 @@ def _add_file(parser: argparse.ArgumentParser, nargs: Literal["?"] | None = None
     )
     parser.add_argument("keyframes", metavar="KEYFRAMES", help=kinds, nargs=nargs)
     parser.add_argument(
-        "--skip", type=_frames, default=0, metavar="N", help="frames left out first"
+        "--skip", type=_frames, default=0, metavar="N", help="leave out the first N frames"
     )
-    parser.add_argument("--skeleton", metavar="ASF", help="of an AMC; by default the one beside it")
-    rate = "of files that do not say (KITTI, AMC), or other than a BVH says"
+    skeleton = "the skeleton of an AMC file; default: the one beside it"
+    parser.add_argument("--skeleton", metavar="ASF", help=skeleton)
+    rate = "the frame rate of files that do not give one (KITTI, AMC), or to override that of a BVH"
     parser.add_argument("--frame-rate", type=_rate, metavar="HZ", help=rate)
-    gap = "frames farther apart (s) are in pieces, each with a curve of its own"
+    gap = "split the motion where frames are further apart than this (s); every piece gets its own curve"
     parser.add_argument("--max-gap", type=_rate, metavar="S", help=gap)
 
 
 def _add_schemes(parser: argparse.ArgumentParser) -> None:
-    names = "names, by blanks or commas"
-    parser.add_argument("--schemes", nargs="+", metavar="S", action="append", help=names)
+    names = "names of schemes, separated by blanks or commas"
+    known = parser.add_argument("--schemes", nargs="+", metavar="S", action="append", help=names)
+    _completed(known, completion.listed_schemes)
 
 
 def _add_option(parser: argparse.ArgumentParser, whose: str) -> None:
-    told = f"an option {whose}, may be repeated: see quatspline options S"
-    parser.add_argument(
+    told = f"an option {whose}; may be repeated; see quatspline options S"
+    known = parser.add_argument(
         "--option", dest="options", action="append", default=[], metavar="NAME=VALUE", help=told
     )
+    _completed(known, completion.options)
 
 
 def _add_force(parser: argparse.ArgumentParser) -> None:
-    replaced = "replace files that quatspline did not write, or that were edited since"
+    replaced = "also replace files that quatspline did not write, or that were edited since"
     parser.add_argument("--force", action="store_true", help=replaced)
+
+
+def _completed(argument: argparse.Action, completer: Callable[..., list[str]]) -> None:
+    """Have shells complete an argument so: argcomplete looks for an attribute of this name."""
+    vars(argument)["completer"] = completer
 
 
 def _number(kind: type, accepts: Callable[[Any], bool], wanted: str) -> Callable[[str], Any]:
@@ -242,7 +268,7 @@ def _number(kind: type, accepts: Callable[[Any], bool], wanted: str) -> Callable
         with suppress(ValueError):
             if text.isascii() and "_" not in text and accepts(value := kind(text)):
                 return value
-        raise argparse.ArgumentTypeError(f"{text!r}: {wanted} is expected")
+        raise argparse.ArgumentTypeError(f"{text!r}: expected {wanted}")
 
     return parsed
 
@@ -256,7 +282,9 @@ def _angle(text: str) -> float:
         value = float(number) * {"deg": math.pi / 180.0, "rad": 1.0}.get(unit, math.nan)
         if 0.0 < value < math.inf:
             return value
-    raise argparse.ArgumentTypeError(f"{text!r}: a positive angle with its unit, as 0.5deg")
+    raise argparse.ArgumentTypeError(
+        f"{text!r}: expected a positive angle with its unit, such as 0.5deg"
+    )
 
 
 SECONDS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0}
@@ -270,14 +298,16 @@ def _unit(text: str) -> float:
         if 0.0 < seconds < math.inf:
             return seconds
     units = ", ".join(SECONDS)
-    raise argparse.ArgumentTypeError(f"{text!r}: one of {units} is expected, or as in '1/30 s'")
+    raise argparse.ArgumentTypeError(
+        f"{text!r}: expected one of {units}, or a multiple such as '1/30 s'"
+    )
 
 
 _rate = _number(float, lambda value: 0.0 < value < math.inf, "a positive number")
-_least = _number(float, lambda value: 0.0 <= value < math.inf, "a number, at least 0,")
+_least = _number(float, lambda value: 0.0 <= value < math.inf, "a number, at least 0")
 MOST = 2**63 - 1
-"""Of what is counted: beyond, a number is a slip of the keyboard and fits into no array."""
+"""The largest count accepted: a larger number is a slip of the keyboard and fits no array."""
 
-_count = _number(int, lambda value: 1 <= value <= MOST, "a whole number, at least 1,")
-_frames = _number(int, lambda value: 0 <= value <= MOST, "a whole number, at least 0,")
-_seed = _number(int, lambda value: value >= 0, "a whole number, at least 0,")
+_count = _number(int, lambda value: 1 <= value <= MOST, "a whole number, at least 1")
+_frames = _number(int, lambda value: 0 <= value <= MOST, "a whole number, at least 0")
+_seed = _number(int, lambda value: value >= 0, "a whole number, at least 0")

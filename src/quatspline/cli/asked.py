@@ -37,7 +37,9 @@ def check_tracks(arguments: argparse.Namespace, motion: Motion, needs: Needs) ->
     count, file = len(motion.tracks), arguments.keyframes
     if count > 1 and arguments.keep is None:
         raise ValueError(
-            f"{file}: {count} tracks are compared at the frames that --keep K leaves out"
+            f"{file}: {count} tracks need --keep K: they are compared at the frames that it leaves out"
         )
     if count > 1 and needs.limits:
-        raise ValueError(f"{file}: {needs.limits[0].flag} is asked of one track, here are {count}")
+        raise ValueError(
+            f"{file}: {needs.limits[0].flag} applies to a single track, and there are {count}"
+        )

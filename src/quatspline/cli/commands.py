@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from quatspline.cli.arguments import REFUSED, parser
+from quatspline.cli.completion import offered
 from quatspline.cli.notes import note
 from quatspline.system.atomic import naming
 from quatspline.system.ending import Ended, ending
@@ -55,7 +56,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     if sys.stdout is None:  # and the next file that is opened would get its number
         return _told("standard output is closed: point it to a file or to /dev/null", REFUSED)
     try:
-        arguments = parser().parse_args(given)
+        commands = parser()
+        offered(commands)
+        arguments = commands.parse_args(given)
         arguments.command = ["quatspline", *map(printable, given)]  # as files and pages can hold it
         with ending(partial(_interrupted, arguments.name)):
             with reserved():
@@ -90,7 +93,7 @@ def _served(arguments: argparse.Namespace) -> int:
 
 
 def _interrupted(command: str, status: int) -> int:
-    hint = ": the same command goes on where it stopped" if command in ("run", "motions") else ""
+    hint = ": the same command resumes where it stopped" if command in ("run", "motions") else ""
     return _told(f"interrupted{hint}", status)
 
 

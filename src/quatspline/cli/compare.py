@@ -38,10 +38,10 @@ KEPT = (
     "--keep leaves out."
 )
 BARS = (
-    "Torque energy over the least of all schemes compared, with the continuity as measured here; hollow: third-party "
-    "schemes.\n"
+    "Torque energy over the least of all that pass through the keyframes, with the continuity as measured here; in "
+    "colour the schemes whose rates are drawn; hollow: third-party schemes.\n"
 )
-RATES = "Norms of the angular velocity and acceleration over time; grey lines are keyframes.\n"
+RATES = "Norms of the angular velocity and acceleration over time; upright lines are keyframes, where they are few.\n"
 
 
 def command(
@@ -169,7 +169,7 @@ def _drawn(
     mpl.use("Agg")  # nothing here may open a window
     names = shown(table, needs)[: comparison.CURVES]
     with style.applied():
-        results.figure("compare", comparison.bars(table))
+        results.figure("compare", comparison.bars(table, names))
         results.figure("rates", comparison.rates({name: curves[name] for name in names}, keyframes))
     results.text("compare.caption.txt", BARS)
     results.text("rates.caption.txt", RATES)

@@ -46,7 +46,8 @@ JOINTS_NOTE = (
 )
 SPANS = (
     "Angles at the frames left out: dots are the median over the joints of their root mean squares, bars reach to the "
-    "worst joint, strokes are the largest angle of all.\n"
+    "worst joint, strokes are the largest angle of all; in colour the schemes that are drawn joint by joint; hollow: "
+    "third-party schemes.\n"
 )
 BY_JOINT = (
     "Root mean square angle of every joint at the frames left out, by slerp and the best schemes.\n"
@@ -175,8 +176,9 @@ def _drawn(results: Results, table: pd.DataFrame, joints: pd.DataFrame) -> None:
         return
     mpl.use("Agg")  # nothing here may open a window
     with style.applied():
-        results.figure(NAME, kept.spans(table))
-        results.figure(JOINTS, kept.by_joint(joints, chosen(table, "rms_median")[:DRAWN]))
+        names = chosen(table, "rms_median")[:DRAWN]
+        results.figure(NAME, kept.spans(table, names))
+        results.figure(JOINTS, kept.by_joint(joints, names))
     results.text(f"{NAME}.caption.txt", SPANS)
     results.text(f"{JOINTS}.caption.txt", BY_JOINT)
 

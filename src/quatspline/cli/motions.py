@@ -23,7 +23,7 @@ def command(folder: Path, *, mirror: str | None, force: bool) -> int:
     found = fetch(folder, mirror=mirror, force=force, progress=_bar)
     for failure in found.failures:
         note(failure)
-    say([f"{folder}: {len(found.new)} fetched, {len(found.kept)} there before"])
+    say([f"{folder}: {len(found.new)} downloaded, {len(found.kept)} already there"])
     if found.failures:
         return 1
     say([f"export {FOLDER}={folder}"])

@@ -109,11 +109,11 @@ def _reason(row: Row, needs: Needs) -> str:
     smooth = 2 if needs.smooth is None else needs.smooth
     tests = (
         ("not measured", lambda: isinstance(row["failure"], str)),
-        ("lacking what was asked for", lambda: bool(needs.broken(row))),
+        ("ruled out by your needs", lambda: bool(needs.broken(row))),
         ("missing the keyframes", lambda: row["misses"] > candidates.MET),
         ("with leaps", lambda: row["continuity"] < 0),
-        ("with jumps of the velocity", lambda: row["continuity"] < min(smooth, 1)),
-        ("with jumps of the acceleration", lambda: row["continuity"] < smooth),
+        ("with velocity jumps", lambda: row["continuity"] < min(smooth, 1)),
+        ("with acceleration jumps", lambda: row["continuity"] < smooth),
         ("turning during holds", lambda: row["hold_rotation"] > candidates.STILL),
     )
     return next((reason for reason, applies in tests if applies()), "ranked lower")

@@ -63,7 +63,7 @@ def _check_out(arguments: argparse.Namespace) -> None:
     """Refuse a file to write that no format has, or that is read, before any work is done."""
     files.check_suffix(arguments.file)
     if same_file(arguments.keyframes, arguments.file):
-        raise ValueError(f"{arguments.file}: is read here, so it is not written over")
+        raise ValueError(f"{arguments.file}: is also read here, so it is not overwritten")
 
 
 # -- sample ---------------------------------------------------------------------------------------

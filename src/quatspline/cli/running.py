@@ -105,7 +105,7 @@ def _write_page(results: Results, *, asked: bool) -> list[str]:
     page = results.folder / PAGE
     if not asked and not results.owns(PAGE):
         if page.exists():
-            _say(f"{page}: not of this folder's runs, so it was left as it is")
+            _say(f"{page}: not written by a run in this folder, so it was left as it is")
         return []
     from quatspline.page import write_page
 
@@ -164,9 +164,9 @@ def _perform(experiment: Experiment, run: Run, results: Results) -> None:
         keys=getattr(module, "KEYS", None),
         closing=getattr(module, "text", None),
     )
-    if hasattr(module, "caption"):
-        results.text(f"{name}.caption.txt", module.caption(table).strip() + "\n")
     if hasattr(module, "draw") and not _all_failed(table):
+        if hasattr(module, "caption"):
+            results.text(f"{name}.caption.txt", module.caption(table).strip() + "\n")
         _draw(module, table, name, results)
     if hasattr(module, "replays"):
         results.replays(name, module.replays(run))

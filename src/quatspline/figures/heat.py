@@ -10,11 +10,13 @@ import numpy as np
 import pandas as pd
 
 MISSING = "#dddddd"
-COLOURS = "viridis_r"
-"""Light is little, dark is much; even in grey print."""
+COLOURS = "YlGnBu"
+"""Pale is little, dark is much, even in grey print; none is the grey of what is missing."""
 
 ROW = 0.17
-"""Inches a row: the least at which 7-point names do not touch."""
+"""Inches a row, for what is read along."""
+TIGHT = 0.135
+"""The least at which names do not touch, for as many schemes as there are."""
 
 
 SMALL = 7.0
@@ -22,6 +24,9 @@ SMALL = 7.0
 
 SHARE = 0.4
 """Of the width of several maps, what their bar takes."""
+
+APART = 0.08
+"""Inches between a map, with what is written under it, and its bar, however many rows it has."""
 
 
 def log_heat(
@@ -50,8 +55,9 @@ def log_heat(
     if under is not None and not under:
         return
     share = SHARE if under else 1.0
+    apart = APART / ax.figure.get_figheight()
     place = {"orientation": "horizontal", "aspect": 40, "extend": "both", "shrink": share}
-    bar = ax.figure.colorbar(image, ax=list(under or [ax]), **place)
+    bar = ax.figure.colorbar(image, ax=list(under or [ax]), pad=apart, **place)
     bar.set_label(label)
     if ticks is not None:
         bar.set_ticks(list(ticks), labels=list(ticks.values()))
@@ -69,7 +75,7 @@ def label_cells(ax: Any, texts: pd.DataFrame, dark: pd.DataFrame) -> None:
 def scheme_rows(ax: Any, names: Sequence[str], *, shown: bool = True) -> None:
     """A row of height 1 a name, the first on top."""
     ax.set_yticks(range(len(names)), list(names) if shown else [])
-    ax.set_ylim(len(names) - 0.5, -0.5)
+    ax.set_ylim(max(len(names), 1) - 0.5, -0.5)
 
 
 def _label(ax: Any, frame: pd.DataFrame, names_shown: bool) -> None:

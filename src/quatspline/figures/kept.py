@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from quatspline.figures import style
+from quatspline.catalogue import called
+from quatspline.figures import named, style
 from quatspline.figures.heat import ROW, scheme_rows
 
 if TYPE_CHECKING:
@@ -15,8 +16,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def spans(table: pd.DataFrame) -> Figure:
-    """One row per scheme, the best on top: from the joints' median to the worst joint, and the largest angle."""
+def spans(table: pd.DataFrame, chosen: Sequence[str]) -> Figure:
+    """One row per scheme, the best on top: from the joints' median to the worst joint, and the largest angle.
+
+    Schemes ``chosen``, whose joints are drawn beside, are in colour, all others grey; third-party schemes are hollow.
+    """
     rows = table[table["rms_median"].notna()]
     fig, panels = style.axes(style.COLUMN, 0.7 + ROW * max(len(rows), 3))
     ax = panels[0, 0]
@@ -24,12 +28,15 @@ def spans(table: pd.DataFrame) -> Figure:
         median, worst, largest = np.degrees(
             [row[k] for k in ("rms_median", "rms_worst", "largest")]
         )
-        color = style.scheme_style(str(row["scheme"]))["color"]
-        ax.plot([median, worst], [height, height], color=color, lw=2.0, solid_capstyle="butt")
-        ax.plot(median, height, "o", color=color, ms=4.0)
-        ax.plot(largest, height, "|", color=color, ms=6.0)
+        look = named.looks(str(row["scheme"]), chosen) | {"marker": "o", "ms": 4.0}
+        ax.plot(
+            [median, worst], [height, height], color=look["color"], lw=2.0, solid_capstyle="butt"
+        )
+        ax.plot(median, height, **look)
+        ax.plot(largest, height, "|", color=look["color"], ms=6.0)
     ax.set(xscale="log", xlabel="degrees at frames left out")
-    scheme_rows(ax, [str(name) for name in rows["scheme"]])
+    style.plain_log(ax.xaxis)
+    scheme_rows(ax, [called(str(name)) for name in rows["scheme"]])
     return fig
 
 
@@ -43,8 +50,9 @@ def by_joint(joints: pd.DataFrame, schemes: Sequence[str]) -> Figure:
     for name in schemes:
         own = rows[rows["scheme"] == name]
         looks = style.scheme_style(name) | {"linestyle": "", "markersize": 4.0}
-        ax.plot(np.degrees(own["rms"]), own["joint"].map(places), label=name, **looks)
+        ax.plot(np.degrees(own["rms"]), own["joint"].map(places), label=called(name), **looks)
     ax.set(xscale="log", xlabel="rms angle (degrees) at frames left out")
+    style.plain_log(ax.xaxis)
     scheme_rows(ax, list(places))
     style.legend_of(fig, ax, 2)
     return fig

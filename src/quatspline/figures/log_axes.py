@@ -1,6 +1,7 @@
 """The log-curves ln q(t) of several schemes in R^3, with their keyframes."""
 
 from collections.abc import Sequence
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -8,10 +9,12 @@ from matplotlib.ticker import MaxNLocator, MultipleLocator
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 from numpy.typing import ArrayLike
 
-from quatspline.figures.scenes import view_axes
+from quatspline.figures.scenes import project, view_axes
 from quatspline.quaternion import FloatArray
 
 _GRID, _TEXT = "#dcdee3", "#374151"
+_AROUND = 0.8
+"""Inches of a panel, in all, for numbers and names of axes."""
 _LETTER = 0.032
 """Width of a letter, about, over the extent of what is drawn."""
 _BOTH = np.array([-1.0, 1.0])
@@ -93,12 +96,23 @@ def _log_axes(ax: Axes3D, points: FloatArray, elev: float, azim: float) -> None:
     ax.computed_zorder = False
     ax.set_proj_type("ortho")
     ax.view_init(elev=elev, azim=azim)
-    ax.set_box_aspect(size, zoom=0.86)
-    step = MaxNLocator(3, steps=[1, 2, 5, 10]).tick_values(low[0], low[0] + size.max())
+    step = MaxNLocator(5, steps=[1, 2, 5, 10]).tick_values(low[0], low[0] + size.max())
     for index, axis in enumerate((ax.xaxis, ax.yaxis, ax.zaxis)):
         limits = middle[index] + half[index] * _BOTH
         getattr(ax, f"set_{'xyz'[index]}lim")(limits, view_margin=0)
         _style_axis(axis, f"$(\\ln q)_{'xyz'[index]}$", step[1] - step[0])
+    ax.set_box_aspect(tuple(size))  # a copy: it scales what it is given
+    ax.set_box_aspect(tuple(size), zoom=_zoom(ax))
+
+
+def _zoom(ax: Axes3D) -> float:
+    """How much larger the box may be drawn, numbers and names of its axes included."""
+    ax.apply_aspect()
+    corners = np.array(list(product(*(getattr(ax, f"get_{name}lim")() for name in "xyz"))))
+    drawn = np.ptp(ax.transData.transform(project(ax, corners)), axis=0)
+    panel = ax.get_position(original=True).transformed(ax.figure.transSubfigure)
+    room = np.array([panel.width, panel.height]) - _AROUND * ax.figure.dpi
+    return float((room / drawn).min())
 
 
 def _style_axis(axis: Any, label: str, step: float) -> None:
@@ -109,4 +123,4 @@ def _style_axis(axis: Any, label: str, step: float) -> None:
     axis._axinfo["tick"].update(inward_factor=0.0, outward_factor=0.12)
     axis.set_tick_params(labelsize=7, labelcolor=_TEXT, color=_GRID, pad=-1)
     axis.set_label_text(label, fontsize=8.5, color=_TEXT)
-    axis.labelpad = -2
+    axis.labelpad = 1

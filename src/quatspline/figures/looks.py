@@ -22,8 +22,8 @@ DASHES: tuple[Dash, ...] = (
     *("-", "--", "-.", ":"),
     *((0, (9.0, 3.0)), (0, (9.0, 3.0, 1.5, 3.0)), (0, (5.0, 1.5, 1.0, 1.5, 1.0, 1.5))),
 )
-MARKERS = ("o", "s", "^", "D", "v", "P", "*", "X", "<", ">", "p", "h")
-"""All can be hollow."""
+MARKERS = ("o", "s", "^", "D", "v", "<", ">", "p", "h", "P", "X", "*")
+"""All can be hollow; the last three, too thin for it where they are small, are for schemes of no family alone."""
 
 
 class Family(NamedTuple):

@@ -17,7 +17,7 @@ from quatspline.figures.log_axes import draw_log_curves
 from quatspline.figures.meshes import Mesh, key_mesh, teapot_mesh
 from quatspline.figures.scenes import BRASS, draw_frames
 from quatspline.options import among
-from quatspline.quaternion import FloatArray
+from quatspline.quaternion import FloatArray, distance
 from quatspline.trajectories.paper import RECONSTRUCTED, SOLVE, PaperCase
 
 LOG_SAMPLES = 601
@@ -87,7 +87,9 @@ def four_panels(case: PaperCase, table: pd.DataFrame) -> Figure:
     panels = [("keyframes", key_frames, "white")]
     for name in ("quartic", "nielson"):
         picked = table[(table.panel == "frames") & (table.scheme == name)]
-        panels.append((f"frames by {TITLES[name]}", picked, style.scheme_style(name)["color"]))
+        apart = f", up to {_apart(table):.0f}° from (b)" if name == "nielson" else ""
+        label = f"frames by {TITLES[name]}{apart}"
+        panels.append((label, picked, style.scheme_style(name)["color"]))
     boxes = _boxes(case.name)
     for letter, (label, rows, color), box in zip("abc", panels, boxes, strict=False):
         _scene(fig, case, rows, key_frames, box, color)
@@ -110,6 +112,13 @@ def caption_of(case: PaperCase, table: pd.DataFrame) -> str:
     )
 
 
+def _apart(table: pd.DataFrame) -> float:
+    """The largest angle (degrees) between the frames of the two schemes, which the eye hardly finds."""
+    frames = table[table.panel == "frames"]
+    q, p = (frames.loc[frames.scheme == name, ORIENTATION].to_numpy() for name in PAPER[:2])
+    return float(np.degrees(distance(q, p)).max())
+
+
 PAPER = ("quartic", "nielson", "kim")
 TITLES = {"quartic": "the quartic", "nielson": "the B-spline (Nielson)"}
 Box = tuple[float, float, float, float]
@@ -118,7 +127,7 @@ Box = tuple[float, float, float, float]
 def _boxes(name: str) -> list[Box]:
     """Left, bottom, width, height of the panels in shares of the figure."""
     if name == "key":
-        return [*((0.0, 0.82 - 0.175 * k, 1.0, 0.145) for k in range(3)), (0.2, 0.02, 0.6, 0.4)]
+        return [*((0.0, 0.82 - 0.175 * k, 1.0, 0.145) for k in range(3)), (0.2, 0.0, 0.6, 0.44)]
     return [(x, y, 0.48, 0.45) for y in (0.5, 0.0) for x in (0.01, 0.51)]
 
 

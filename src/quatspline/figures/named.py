@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -19,16 +19,19 @@ NAMED = (
 )
 """Drawn in colour where many schemes are compared: what readers know, the paper's, ours, and a library's."""
 
-SAID = f"In colour {', '.join(NAMED[:-1])} and {NAMED[-1]}, in grey all other schemes; third-party schemes are hollow."
-"""For captions."""
 
-ROOM = 0.86
-"""Of the width, for axes whose curves are named at the right."""
+def said(chosen: Sequence[str] = NAMED) -> str:
+    """Which schemes are in colour, for captions."""
+    names = f"{', '.join(chosen[:-1])} and {chosen[-1]}"
+    return f"In colour {names}, in grey all other schemes; third-party schemes are hollow."
 
 
-def looks(name: str) -> dict[str, Any]:
-    """The style of a scheme among many."""
-    known = name in NAMED
+SAID = said()
+
+
+def looks(name: str, chosen: Collection[str] = NAMED) -> dict[str, Any]:
+    """The style of a scheme among many, of which those chosen are in colour."""
+    known = name in chosen
     own = style.scheme_style(name) if known else {"color": GREY, "marker": ".", "linestyle": "-"}
     face = {"markerfacecolor": "white", "mew": 0.7} if third_party(name) else {}  # grey ones, too
     return own | face | {"lw": 1.2 if known else 0.6, "ms": 3.2, "zorder": 3 if known else 2}
@@ -42,13 +45,17 @@ def draw_curves(ax: Any, curves: Iterable[tuple[str, pd.Series, pd.Series]]) -> 
         ax.plot(x, y, **look)
         finite = np.isfinite(y.to_numpy(dtype=float))
         if name in NAMED and finite.any():
-            ends[name] = End(x[finite].iloc[-1], y[finite].iloc[-1], called(name), look["color"])
+            tip = (x[finite].iloc[-1], y[finite].iloc[-1])
+            ends[name] = End(*tip, called(name), look["color"], look["linestyle"])
     return ends
 
 
 def name_ends(fig: Any, panels: Mapping[Any, Mapping[str, End]]) -> None:
-    """Write names right of the curves of some axes, after all else is laid out."""
+    """Write names right of the curves of some axes, after all else is laid out with the room that they take."""
+    held = [text for ax, ends in panels.items() for text in direct.hold_room(ax, ends.values())]
     fig.draw_without_rendering()
     fig.set_layout_engine("none")
+    for text in held:
+        text.remove()
     for ax, ends in panels.items():
         direct.label_ends(ax, list(ends.values()))

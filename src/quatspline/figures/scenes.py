@@ -181,14 +181,14 @@ def _add_shadow(ax: Axes3D, cells: FloatArray) -> None:
     The cells all turn one way, so as one path, filled where the winding is not 0, they are their
     union, without seams.
     """
-    flat = _project(ax, np.concatenate([cells, cells[:, :1]], axis=1).reshape(-1, 3))
+    flat = project(ax, np.concatenate([cells, cells[:, :1]], axis=1).reshape(-1, 3))
     codes = np.tile([Path.MOVETO, *3 * [Path.LINETO], Path.CLOSEPOLY], len(cells))
     shadow = _FlatPatch(Path(flat, codes), facecolor=_SHADOW, edgecolor="none", zorder=0)
     shadow.set(rasterized=True, clip_on=False)
     ax.add_artist(shadow)  # add_patch would walk the path to find limits that are set already
 
 
-def _project(ax: Axes3D, points: FloatArray) -> FloatArray:
+def project(ax: Axes3D, points: FloatArray) -> FloatArray:
     """Return points (k, 3) in the axes' own plane, as its camera sees them: (k, 2)."""
     homogeneous: FloatArray = (
         np.pad(points, ((0, 0), (0, 1)), constant_values=1.0) @ ax.get_proj().T
@@ -215,7 +215,7 @@ def _fit(ax: Axes3D, points: FloatArray, elev: float, azim: float, margin: float
 def _panel_scale(ax: Axes3D, centre: FloatArray, view: FloatArray, size: FloatArray) -> float:
     """Return the zoom at which a view (width, height) of scene units just fills the panel."""
     ax.apply_aspect()
-    pixels = ax.transData.transform(_project(ax, np.stack([centre, centre + view[0]])))
+    pixels = ax.transData.transform(project(ax, np.stack([centre, centre + view[0]])))
     unit = np.linalg.norm(pixels[1] - pixels[0])
     panel = ax.get_position(original=True).transformed(ax.figure.transSubfigure)
     return float(min(panel.width / (unit * size[0]), panel.height / (unit * size[1])))

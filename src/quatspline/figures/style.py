@@ -8,6 +8,7 @@ from typing import Any
 
 import matplotlib as mpl
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from quatspline.figures.looks import BLUE, RED, scheme_style
 
@@ -23,6 +24,7 @@ __all__ = [
     "axes",
     "legend_of",
     "letters",
+    "plain_log",
     "scheme_style",
 ]
 
@@ -70,6 +72,20 @@ def axes(width: float, height: float, rows: int = 1, columns: int = 1, **options
     """(figure, axes array (rows, columns)), laid out so that labels do not overlap; in inches."""
     fig = Figure(figsize=(width, height), layout="constrained")
     return fig, fig.subplots(rows, columns, squeeze=False, **options)
+
+
+PLAIN = 100.0
+"""Ratio of limits up to which a logarithmic axis has numbers between powers of ten."""
+
+
+def plain_log(axis: Any) -> None:
+    """Write 0.5, 1, 2 on a short logarithmic axis, whose limits are final; powers of ten on a long one."""
+    low, high = sorted(axis.get_view_interval())
+    if high > PLAIN * low:
+        return
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_locator(NullLocator())
 
 
 def legend_of(fig: Figure, ax: Any, columns: int) -> None:

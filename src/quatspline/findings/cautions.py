@@ -85,15 +85,15 @@ def _clock(keyframes: Keyframes) -> Iterator[list[Part]]:
     since, spacing = keyframes.knots, float(np.median(keyframes.spacings))
     if keyframes.count > 2 and np.array_equal(since, np.arange(since.size)):
         yield [
-            f"the times count 0, 1, 2 ... {since[-1]:.0f} as frame numbers do, and are taken for seconds. If they are "
-            'frames, say how long one lasts, as in --time-unit "1/30 s".'
+            f"counted from the first, the times are 0, 1, 2 ... {since[-1]:.0f}, like frame numbers. They are taken as "
+            'seconds. If they are frames, give the length of one, as in --time-unit "1/30 s".'
         ]
     elif spacing >= COARSE and np.array_equal(since, np.round(since)):
         name = "nanoseconds" if spacing >= FINE else "microseconds"
         short, count = CLOCKS[name]
         yield [
-            f"the times are {significant(spacing)} apart (median) as {name} are at {significant(count / spacing)} Hz, "
-            f"and are taken for seconds. If they are {name}, say --time-unit {short}."
+            f"the times are {significant(spacing)} apart (median), like {name} at {significant(count / spacing)} Hz. "
+            f"They are taken as seconds. If they are {name}, use --time-unit {short}."
         ]
 
 
@@ -102,9 +102,9 @@ def _crowded(h: FloatArray, pair: Pair) -> Iterator[list[Part]]:
     if close.size:
         k = int(close[h[close].argmin()])
         yield [
-            f"{pair(k)} are almost duplicates, {significant(float(h[k]))} s apart where the median "
-            f"spacing is {significant(float(np.median(h)))} s{_others(close.size, 'such pair')}: whatever "
-            "turns between them turns at once."
+            f"{pair(k)} are almost duplicates: they are {significant(float(h[k]))} s apart, and the median spacing "
+            f"is {significant(float(np.median(h)))} s{_others(close.size, 'such pair')}. Any rotation between them "
+            "happens almost instantly."
         ]
 
 
@@ -114,9 +114,9 @@ def _gaps(h: FloatArray, angles: FloatArray, pair: Pair) -> Iterator[list[Part]]
     if wide.size:
         k = int(wide[h[wide].argmax()])
         yield [
-            f"a gap of {significant(float(h[k]))} s between {pair(k)}, "
-            f"{significant(h[k] / median)} times the median spacing{_others(wide.size, 'gap')}: what a curve does "
-            "there is its own invention."
+            f"there is a gap of {significant(float(h[k]))} s between {pair(k)}, {significant(h[k] / median)} times "
+            f"the median spacing{_others(wide.size, 'gap')}. The keyframes do not say what happens there, so every "
+            "curve invents it."
         ]
 
 
@@ -130,12 +130,12 @@ def _holds(angles: FloatArray, pair: Pair, frame: pd.DataFrame) -> Iterator[list
         return
     if still.size >= COPIES * angles.size and angles.size >= ENOUGH:
         yield [
-            f"{still.size} of {angles.size} steps do not turn at all, as where samples are repeated: leave the copies "
-            "out, or every curve stops and starts at each."
+            f"{still.size} of {angles.size} steps do not turn at all, as if samples were repeated. Leave the copies "
+            "out; otherwise every curve stops and starts at each of them."
         ]
         return
     head = f"{pair(int(still[0]))} are equal{_others(still.size, 'hold')}"
-    yield [f"{head}: while they stand still, ", *_told(_holding(frame)), "."]
+    yield [f"{head}. While the keyframes hold, ", *_told(_holding(frame)), "."]
 
 
 def _holding(frame: pd.DataFrame) -> list[tuple[Row, Quote]]:
@@ -155,7 +155,7 @@ def _told(turns: Sequence[tuple[Row, Quote]]) -> list[Part]:
         verb = " turns up to " if not parts else " "
         parts += [", " if parts else "", called(row["scheme"]), verb, angle]
         parts += [" degrees away" if len(parts) < 5 else ""]
-    return parts or ["no scheme measured tells how far curves turn"]
+    return parts or ["schemes may turn away, but none was measured"]
 
 
 def _half_turns(angles: FloatArray, pair: Pair) -> Iterator[list[Part]]:
@@ -163,10 +163,10 @@ def _half_turns(angles: FloatArray, pair: Pair) -> Iterator[list[Part]]:
     if half.size:
         k = int(half[angles[half].argmax()])
         left = 180.0 - float(angles[k])
-        told = "exactly half a turn, so that rounding decides which way round it goes"
+        told = "exactly half a turn, so rounding decides which way the curve turns"
         if left > ROUNDING:
             more = significant(left)
-            told = f"{angles[k]:.4g} degrees: {more} more, and it goes the other way round"
+            told = f"{angles[k]:.4g} degrees. With {more} more, the curve would turn the other way"
         yield [
             f"the step between {pair(k)} is {told}{_others(half.size, 'such step')}. A keyframe between them would "
             "settle which way is meant."
@@ -179,8 +179,8 @@ def _wide(angles: FloatArray, pair: Pair) -> Iterator[list[Part]]:
         k = int(wide[angles[wide].argmax()])
         yield [
             f"the step between {pair(k)} is {significant(float(angles[k]))} degrees"
-            f"{_others(wide.size, f'step over {WIDE:g}')}: schemes differ most where steps are that wide, and a "
-            "keyframe between them settles more than any choice of scheme."
+            f"{_others(wide.size, f'step over {WIDE:g}')}. Schemes differ most on such large steps; a keyframe "
+            "between the two matters more than the choice of scheme."
         ]
 
 
@@ -193,16 +193,16 @@ def _closing(keyframes: Keyframes, angles: FloatArray, second: float) -> Iterato
     if keyframes.closed or len(q) < LOOP or max(away) < max(HOLD, APART * gap):
         return
     if exact or nearly(gap, median):
-        off = significant(float(np.degrees(gap))) if gap > np.radians(ROUNDING) else "0"
+        off = f"is {significant(float(np.degrees(gap)))} degrees from the first"
         later = significant(float(keyframes.knots[-1]) / second)
         row = (
-            "takes the last row for the return"
+            "takes the last row as the return"
             if exact
-            else "asks that its last row repeat the first"
+            else "needs a last row that repeats the first"
         )
         yield [
-            f"the last keyframe is {off} degrees from the first, {later} s later: the motion closes. If it goes on "
-            f"from there as it began, say --closed, which {row}; without it the curve has two ends there."
+            f"the last keyframe {'repeats the first' if exact else off}, {later} s later. For a loop, use --closed, "
+            f"which {row}."
         ]
 
 
@@ -212,8 +212,8 @@ def _noise(frame: pd.DataFrame) -> Iterator[list[Part]]:
         yield [
             "the keyframes have about ",
             multiple(noisy.cell("noise")),
-            " degrees of noise about each axis, judging by their third differences: smooth them, or expect every curve "
-            "that passes through them to repeat it, and its rates to amplify it.",
+            " degrees of noise about each axis, judging by their third differences. Smooth them; a curve that passes "
+            "through them repeats the noise, and its rates amplify it.",
         ]
 
 

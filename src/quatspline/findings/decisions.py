@@ -105,7 +105,7 @@ C2 = (*MET, SMOOTH[2], Condition("smooth_k_worst", ">=", 2))
 
 QUESTIONS = (
     _least(
-        "A curve that is C2 wherever measured, of which a keyframe shapes only a part, with the least torque",
+        "Local and C2 wherever measured, with the least torque",
         "torque",
         (*C2, LOCAL),
         *(TORQUE, "{support} keyframes shape a segment", "order {order:.2f}"),
@@ -127,16 +127,16 @@ QUESTIONS = (
         "C2 wherever measured, with the fewest operations per sample (exponentials and logarithms)",
         "operations_sample",
         C2,
-        *("{operations_sample:.0f} of them", TORQUE),
+        *("{operations_sample:.0f} per sample", TORQUE),
     ),
     _least(
-        "C2 wherever measured, with the quickest sample",
+        "C2 wherever measured, with the fastest sample",
         "nanoseconds_per_sample",
         C2,
         *(QUICKEST, TORQUE),
     ),
     _least(
-        "The quickest sample, whatever the smoothness",
+        "The fastest sample, whatever the smoothness",
         "nanoseconds_per_sample",
         MET,
         *(QUICKEST, "C{smooth_k:.0f} at moderate steps"),

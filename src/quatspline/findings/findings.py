@@ -78,9 +78,9 @@ def _orders(cell: Ledger) -> tuple[Part, ...]:
     where = {"knots": "uniform", "keyframes": fine}
     slopes = [cell("accuracy", "slope", scheme=name, **where) for name in names]
     return said(
-        "Interior orders on a smooth motion, read between {before} and {after} uniform keyframes: "
-        f"{listed(names, '.2f')}. The paper's quartic converges no faster than slerp; with the second derivative of "
-        "the parabola through three keyframes (quintic) the same construction gains an order.",
+        "Orders of convergence on a smooth motion, away from the ends, from {before} to {after} uniform keyframes: "
+        f"{listed(names, '.2f')}. The paper's quartic converges no faster than slerp. With the second derivative of "
+        "the parabola through three keyframes (quintic), the same construction gains one order.",
         before=cell("accuracy", "keyframes", scheme="quartic", knots="uniform", keyframes=coarse),
         after=cell("accuracy", "keyframes", scheme="quartic", **where),
         **numbered(slopes),
@@ -92,7 +92,7 @@ def _torque(cell: Ledger) -> tuple[Part, ...]:
     where = {"data": "committed"}
     medians = [cell("fairness", "median", scheme=name, **where) for name in names]
     return said(
-        "Torque energy over the least possible, median of {sets:d} committed keyframe sets: "
+        "Torque energy relative to the least possible, in the median of {sets:d} committed keyframe sets: "
         f"{listed(names, '.4f')}. local-quintic is local and solves nothing.",
         sets=cell("fairness", "sets", scheme="local-quintic", **where),
         **numbered(medians),
@@ -102,10 +102,10 @@ def _torque(cell: Ledger) -> tuple[Part, ...]:
 def _variants(cell: Ledger) -> tuple[Part, ...]:
     arc: dict[str, Any] = {"scheme": "nlerp", "sphere_degrees": 90}
     return said(
-        "What stands in for slerp: nlerp is off by up to {lag:.3f} degrees on the sphere of quaternions where the "
-        "angle there is {angle:.0f} degrees, a step of {step:.0f} degrees ({formula:.4f} rad as a rotation by its "
-        "closed form, {measured:.4f} measured). Over that arc Eberly's polynomial is off by {few:.1e} rad with "
-        "{few_n:.0f} terms, {some:.1e} with {some_n:.0f} and {many:.1e} with {many_n:.0f}; Li's recurrence drifts by "
+        "Substitutes for slerp: on an arc of {angle:.0f} degrees on the sphere of quaternions, a step of {step:.0f} "
+        "degrees, nlerp is off by up to {lag:.3f} degrees there ({formula:.4f} rad as a rotation by its closed form, "
+        "{measured:.4f} measured). On the same arc, Eberly's polynomial is off by {few:.1e} rad with {few_n:.0f} "
+        "terms, {some:.1e} with {some_n:.0f} and {many:.1e} with {many_n:.0f}; Li's recurrence drifts by "
         "{short:.1e} rad in {short_n:.0f} steps and {long:.1e} in {long_n:.0f}.",
         lag=cell("slerp-variants", "sphere_error_degrees", **arc),
         angle=cell("slerp-variants", "sphere_degrees", **arc),
@@ -134,10 +134,10 @@ def _smoothing(cell: Ledger) -> tuple[Part, ...]:
     where = {"clip": "tumble", "every": 3, "noise_degrees": 1.0}
     angles = [cell("denoise", "rms_degrees", scheme=name, **where) for name in NAMED]
     return said(
-        "What smoothing buys: with white noise of {sigma:.0f} degree about each axis upon {keyframes:.0f} keyframes of "
-        f"a known motion the rms error is, in degrees, {listed(NAMED, '.2f')}; of the angular velocity, in degrees "
-        "per second, {through:.3g} through the keyframes (local-quintic) and {near:.3g} near them. The noise is told "
-        "from the keyframes as {told:.2f} degrees.",
+        "What smoothing gains: with white noise of {sigma:.0f} degree about each axis on {keyframes:.0f} keyframes of "
+        f"a known motion, the rms errors in degrees are {listed(NAMED, '.2f')}. Those of the angular velocity, in "
+        "degrees per second, are {through:.3g} through the keyframes (local-quintic) and {near:.3g} near them "
+        "(smoothing-spline). The noise estimated from the keyframes is {told:.2f} degrees.",
         sigma=cell("denoise", "noise_degrees", scheme="slerp", **where),
         keyframes=cell("denoise", "keyframes", scheme="slerp", **where),
         through=cell("denoise", "omega", scheme="local-quintic", **where),
@@ -157,9 +157,9 @@ def _unsmoothed(cell: Ledger) -> tuple[Part, ...]:
 
     noisy = ", ".join(f"{name} {{n{i}:.2f}}" for i, name in enumerate(names))
     return said(
-        "And where it does not: on clips as they are, one frame in {every:d} kept, the rms angle at the frames "
-        f"left out is, over slerp's, {listed(names, '.2f')}, for what is rough in them is not white; with "
-        f"{{sigma:.0f}} degree of white noise added it is {noisy}.",
+        "Where smoothing gains nothing: on clips as recorded, with one frame in {every:d} kept, the rms angles at the "
+        f"frames left out, relative to slerp's, are {listed(names, '.2f')}, because the roughness of recordings is "
+        f"not white noise. With {{sigma:.0f}} degree of white noise added they are {noisy}.",
         every=cell("denoise", "every", clip=ALL, every=every, noise_degrees=0.0, scheme="slerp"),
         sigma=cell(
             "denoise", "noise_degrees", clip=ALL, every=every, noise_degrees=1.0, scheme="slerp"
@@ -176,8 +176,8 @@ def _wander(cell: Ledger) -> tuple[Part, ...]:
     where = {"data": "hold 10 : 1"}
     worst = [cell("excursion", "wander_worst", scheme=name, **where) for name in EXCURSIVE]
     return said(
-        "Where two keyframes are the same and a body should hold still, beside moves (sets '{data}'), curves wander "
-        f"from the keyframe by up to, in degrees: {listed(EXCURSIVE, '.0f')}.",
+        "Where two keyframes are equal and a body should hold still between moves (sets '{data}'), curves wander from "
+        f"the keyframe by at most this many degrees: {listed(EXCURSIVE, '.0f')}.",
         data=cell("excursion", "data", scheme=EXCURSIVE[0], **where),
         **numbered(worst),
     )
@@ -193,7 +193,7 @@ def _overshoot(cell: Ledger) -> tuple[Part, ...]:
         cell("excursion", "over_worst", scheme=own, data=x) for x in ("generic", "one axis")
     )
     found = said(
-        f"The worst overshoot of a step, as a share of it, is {{generic:.2g}} for {joined(others)} on generic "
+        f"The worst overshoot of a step, as a share of the step, is {{generic:.2g}} for {joined(others)} on generic "
         f"keyframes and {{axis:.2g}} on keyframes about one axis; for {own} it is "
         f"{{own_generic:.1g}} and {{own_axis:.1g}}.",
         generic=worst("generic"),
@@ -210,7 +210,7 @@ def _price(cell: Ledger, scheme: str) -> tuple[Part, ...]:
         torque = cell("fairness", "median", scheme=scheme, data="committed")
     except (FileNotFoundError, LookupError):
         return ()
-    return said(" Its torque energy over the least possible is {x:.3f} in the median.", x=torque)
+    return said(" Its median torque energy is {x:.3f} times the least possible.", x=torque)
 
 
 FINDINGS: tuple[tuple[str, Callable[[Ledger], tuple[Part, ...]]], ...] = (

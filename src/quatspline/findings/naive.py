@@ -1,4 +1,4 @@
-"""What everyone's first idea costs: cubics through the numbers of quaternions, against scipy's spline of rotations."""
+"""What the obvious first idea costs: cubics through the numbers of quaternions, against scipy's spline of rotations."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ LARGE = "170 degrees"
 def torque(cell: Ledger) -> tuple[Part, ...]:
     """What it costs in torque."""
     return said(
-        f"What naive costs in torque: over the least, in the median of {{sets:d}} committed keyframe sets, {NAIVE} has "
-        f"{{naive:.4f}} and scipy's RotationSpline {{careful:.4f}}; at steps of {{where}}, {{naive_large:.3g}} and "
-        "{careful_large:.3g}.",
+        f"What a naive scheme costs in torque: relative to the least, in the median of {{sets:d}} committed keyframe "
+        f"sets, {NAIVE} has {{naive:.4f}} and scipy's RotationSpline {{careful:.4f}}; at steps of {{where}}, "
+        "{naive_large:.3g} and {careful_large:.3g}.",
         sets=cell("fairness", "sets", scheme=NAIVE, data="committed"),
         naive=_torque(cell, NAIVE),
         careful=_torque(cell, CAREFUL),
@@ -34,18 +34,18 @@ def time(cell: Ledger) -> tuple[Part, ...]:
         for i, name in enumerate((NAIVE, CAREFUL))
     }
     return said(
-        f"What naive costs in time: a sample takes {{e0:g}} ns by {NAIVE}, compiled here, and {{e1:g}} ns by "
-        "scipy's RotationSpline; set-up {s0:g} and {s1:g} ns per keyframe, of {keyframes:.0f}.",
+        f"What a naive scheme costs in time: a sample takes {{e0:g}} ns with {NAIVE}, compiled here, and {{e1:g}} ns "
+        "with scipy's RotationSpline; set-up takes {s0:g} and {s1:g} ns per keyframe, with {keyframes:.0f} keyframes.",
         keyframes=cell("speed", "keyframes", scheme=NAIVE, task="set-up"),
         **times,
     )
 
 
-def headline(cell: Ledger) -> tuple[Part, ...]:
-    """Both, in plain words."""
+def sentence(cell: Ledger) -> tuple[Part, ...]:
+    """Both, in plain words, beside a sentence on the least torque."""
     return said(
-        f"**What naive costs.** `{NAIVE}` has {{naive:.3f}} times the least torque, at steps of {{where}} "
-        "{large:.3g}; scipy's `RotationSpline` {careful:.3f} and {careful_large:.3g}, at {sample:.0f} times the time.",
+        f"Naive `{NAIVE}` has {{naive:.3f}} ({{large:.3g}} at steps of {{where}}); scipy's `RotationSpline` has "
+        "{careful:.3f} ({careful_large:.3g}) and takes {sample:.0f} times as long.",
         naive=_torque(cell, NAIVE),
         where=cell("fairness", "data", scheme=NAIVE, data=LARGE),
         large=_torque(cell, NAIVE, LARGE),

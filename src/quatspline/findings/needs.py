@@ -58,7 +58,7 @@ class Limit:
         if not isinstance(self.words, str):
             return [self.words(cell.value)]
         if np.isinf(self.has(row)):
-            return ["without bound"]
+            return ["unbounded"]
         number = multiple(cell) if self.scale == 1.0 else significant(self.has(row))
         return [number, f" {self.words}"]
 

@@ -36,9 +36,9 @@ def _has_torque(table: Table) -> tuple[Part, ...]:
 def _over_least(energy: str, thing: str, table: Table, *, whole: bool = True) -> tuple[Part, ...]:
     """How much of an energy a scheme needs, as an object of "has"; of which curves' least, if it is the whole."""
     column = f"{energy}_over_least"
-    over, of = table.best[column], f" of all {_all(table)}" if whole else ""
+    over, of = table.best[column], f" of all schemes {_all(table)}" if whole else ""
     if np.isinf(over):
-        return (f"a {thing} where another needs none",)
+        return (f"some {thing} where another scheme needs none",)
     if over - 1.0 > EQUAL:
         return table.quote(column, ROUNDED), f" times the least {thing}{of}"
     return (f"the least {thing}{'' if over == 1.0 else ', to three digits,'}{of}",)
@@ -58,14 +58,15 @@ def _all(table: Table) -> str:
 
 
 def _reach(row: Row) -> str:
-    nearby = "a changed keyframe changes the curve nearby only"
-    return "all keyframes shape it" if row["support"] == "all" else nearby
+    nearby = "is local: edits stay nearby"
+    whole = "is global: every keyframe shapes the whole curve"
+    return whole if row["support"] == "all" else nearby
 
 
 def _price(table: Table) -> tuple[str, ...]:
     """What speaks against a scheme that is better than the recommended one, if its reach does."""
     own = _reach(table.best)
-    return () if own == _reach(table.taken) else (f", but {own}",)
+    return () if own == _reach(table.taken) else (f", but {called(table.best['scheme'])} {own}",)
 
 
 def _more(table: Table) -> tuple[Part, ...]:
@@ -73,7 +74,7 @@ def _more(table: Table) -> tuple[Part, ...]:
     if table.best["torque"] == 0.0:
         return ("it needs no torque",)
     ratio = table.quote("taken.torque/torque", ROUNDED)
-    return f"the torque of {called(table.taken['scheme'])} is ", ratio, " times its own"
+    return f"{called(table.taken['scheme'])} has ", ratio, " times its torque"
 
 
 def _at_torque(table: Table) -> tuple[Part, ...]:
@@ -82,10 +83,10 @@ def _at_torque(table: Table) -> tuple[Part, ...]:
     if isclose(own, usual, rel_tol=EQUAL):
         return ", at the same torque", *_price(table)
     if usual == 0.0:
-        return (f", but it needs a torque where {other} needs none",)
+        return (f", but needs torque where {other} needs none",)
     times = table.quote("torque/taken.torque", ROUNDED), f" times that of {other}"
     if own < usual:
-        return ", and its torque is lower, too, ", *times, *_price(table)
+        return ", and its torque is also lower, ", *times, *_price(table)
     return ", but its torque is ", *times
 
 
@@ -98,6 +99,12 @@ def _why_alike(table: Table) -> tuple[Part, ...]:
         return ("their curves coincide on these keyframes",)
     turns = "turn about one axis at a constant rate"
     return (f"the keyframes {turns if table.taken['length'] > MET else 'do not move'}",)
+
+
+def _called(table: Table) -> tuple[Part, ...]:
+    """The schemes of all rows in a sentence, ours marked."""
+    names = [called(row["scheme"]) for row in records(table.rows)]
+    return (" and ".join(filter(None, [", ".join(names[:-1]), names[-1]])),)
 
 
 def _schemes(table: Table) -> tuple[Part, ...]:
@@ -120,5 +127,6 @@ PHRASES: dict[str, Words] = {
     "at torque": _at_torque,
     "over both": _over_both,
     "schemes": _schemes,
+    "called": _called,
     "reason": lambda table: (Quote((table.cell("failure"), table.cell("scheme")), "reason"),),
 }

@@ -71,7 +71,7 @@ def smoothing(needs: Needs) -> tuple[Filter, ...]:
 def _taken(needs: Needs, noisy: bool) -> tuple[Question, ...]:
     """What is said of the scheme that is taken."""
     asked = Question(
-        lambda table: ("It meets what was asked for: ", *had(needs.limits, table.best), "."),
+        lambda table: ("It meets your needs: ", *had(needs.limits, table.best), "."),
         (itself,),
     )
     return Question(THROUGH if noisy else TAKE, take(needs), rank), *(
@@ -95,14 +95,13 @@ def _nearest(needs: Needs, table: Table) -> tuple[Part, ...]:
     """That no scheme meets all needs, and the one that comes nearest."""
     every = ", ".join(limit.flag for limit in needs.limits)
     lost = needs.broken(table.best)
-    asked = "all that was asked for" if len(needs.limits) > 1 else "what was asked for"
     if not lost:
         return (
-            f"No recommendation: of schemes that meet {asked} ({every}), none has a continuous velocity.",
+            f"No recommendation: no scheme that meets your needs ({every}) has a continuous velocity.",
         )
     told = had(lost, table.best)
     return (
-        f"No scheme measured meets {asked} ({every}). The nearest is {called(table.best['scheme'])}: ",
+        f"No scheme measured meets your needs ({every}). The nearest is {called(table.best['scheme'])}: ",
         *told,
         ".",
     )
@@ -122,6 +121,10 @@ def shown(frame: pd.DataFrame, needs: Needs = NOTHING) -> list[str]:
     return list(dict.fromkeys([*first, *(n for n in FAMILIAR if n in every), *every]))
 
 
+FEW = 4
+"""Schemes that are named where they are alike; of more, only their number is told."""
+ALIKE = "give the same result here (torque, length and peak acceleration, to six digits)"
+
 # -- questions ----------------------------------------------------------------------------------
 
 TAKE = (
@@ -133,8 +136,8 @@ THROUGH = (
     "here, {has torque}and {reach}."
 )
 NEAR = (
-    "Take {best}: the keyframes have about {noise:rounded} degrees of noise about each axis, which a curve through "
-    "them repeats. It is C{continuity:.0f} as measured here, passes within {near} of each keyframe, "
+    "Take {best}: the keyframes have about {noise:rounded} degrees of noise about each axis, and a curve through "
+    "them repeats it. The smoothed curve is C{continuity:.0f} as measured here, passes within {near} of each keyframe, "
     "and {reach}."
 )
 
@@ -144,12 +147,16 @@ def _beside(needs: Needs) -> tuple[Question, ...]:
     pool = candidates.candidates(needs)
     return (
         Question(
-            "{count} of the {count of all} schemes measured are alike here (in torque, length and peak acceleration, "
-            "to six digits): {why}. Any of them will do.",
-            (alike, lambda rows, _: len(rows) > 1),
+            f"{{called}} {ALIKE}: {{why}}. Any of them will do.",
+            (alike, lambda rows, _: 1 < len(rows) <= FEW),
+            rank,
         ),
         Question(
-            "It turns {length:rounded} rad where the keyframes need {keyframes_length:rounded}.",
+            f"{{count}} of the {{count of all}} schemes measured {ALIKE}: {{why}}. Any of them will do.",
+            (alike, lambda rows, _: len(rows) > FEW),
+        ),
+        Question(
+            "It turns {length:rounded} rad, although the keyframes need only {keyframes_length:rounded} rad.",
             (
                 itself,
                 lambda rows, _: rows["length"] > (ROUNDABOUT * rows["keyframes_length"]).clip(MET),
@@ -168,7 +175,7 @@ def _beside(needs: Needs) -> tuple[Question, ...]:
             "It comes to a stop at a keyframe.", (itself, lambda rows, _: candidates.stops(rows))
         ),
         Question(
-            "Passed over for wandering: {best} turns {length:rounded} rad; {more}.",
+            "Passed over because it turns too far: {best} turns {length:rounded} rad; {more}.",
             (
                 candidates.usable,
                 needs.met,
@@ -178,7 +185,7 @@ def _beside(needs: Needs) -> tuple[Question, ...]:
             rank,
         ),
         Question(
-            "The fairest candidate is {best}: {more}{price}.",
+            "The candidate with the least torque is {best}: {more}{price}.",
             (
                 *(*pool, candidates.fairest),
                 lambda rows, taken: ~candidates.quicker(rows, taken),
@@ -188,7 +195,7 @@ def _beside(needs: Needs) -> tuple[Question, ...]:
             ),
         ),
         Question(
-            "{best} is tens of times quicker to evaluate than {taken}{at torque}.",
+            "{best} evaluates tens of times faster than {taken}{at torque}.",
             (*pool, candidates.quicker),
             rank,
         ),
@@ -215,7 +222,7 @@ NONE = (
 """Asked where none is."""
 
 OTHERS = (
-    Question("Of {best}: {note}.", (lambda rows, _: rows["note"].notna(),), by_name, by_name),
+    Question("Note on {best}: {note}.", (lambda rows, _: rows["note"].notna(),), by_name, by_name),
     Question(
         "Not measured: {schemes} ({reason}).",
         (lambda rows, _: rows["failure"].notna(),),

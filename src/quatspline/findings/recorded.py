@@ -30,8 +30,8 @@ def worth(cell: Ledger) -> tuple[Part, ...]:
     slerp = {"clip": ALL, "scheme": "slerp", **where}
     return said(
         f"Rebuilt from every {{every:d}}th frame, {whose(cell)} are off by these multiples of slerp's rms angle "
-        f"(geometric mean): {_listed('r', '.2f')}. On the analytic {{tumble}} with the same frames kept they "
-        f"are off by {_listed('t', '.3f')}.",
+        f"(geometric mean): {_listed('r', '.2f')}. On the analytic motion {{tumble}}, with the same frames kept, the "
+        f"multiples are {_listed('t', '.3f')}.",
         every=cell("reconstruct", "every", **slerp),
         joints=cell("reconstruct", "compared_joints", **slerp),
         tumble=cell("reconstruct", "clip", clip="tumble", scheme="slerp", **where),
@@ -45,9 +45,9 @@ def cause(cell: Ledger) -> tuple[Part, ...]:
     raw: dict[str, Any] = {"filter": RAW, "every": DENSE}
     calm: dict[str, Any] = {"clip": ALL, "filter": CALM, "every": DENSE}
     return said(
-        "What is fast is the cause, the noise with it: of the motion below {calm}, every {every:d}th frame kept, the "
-        f"multiples are {_listed('c', '.3f')}; of the motion as it is {_listed('r', '.2f')}; of noise without motion "
-        f"{_listed('n', '.2f')}.",
+        "The cause is fast motion and noise. With every {every:d}th frame kept, the multiples for the motion below "
+        f"{{calm}} are {_listed('c', '.3f')}; for the motion as recorded, {_listed('r', '.2f')}; for noise without "
+        f"motion, {_listed('n', '.2f')}.",
         calm=cell("reconstruct", "filter", scheme="slerp", **calm),
         every=cell("reconstruct", "every", scheme="slerp", **calm),
         **_over_slerp(cell, "c", **calm),
@@ -59,9 +59,9 @@ def cause(cell: Ledger) -> tuple[Part, ...]:
 def circles(cell: Ledger) -> tuple[Part, ...]:
     """Schemes through circles, on hinges that reverse."""
     return said(
-        "Where a hinge reverses, a circle through three keyframes may go the long way round: with every {every:d}th "
-        f"frame kept, a joint is off by up to {{v0:.1f}} degrees by {CIRCULAR[0]}, {{v1:.1f}} by {CIRCULAR[1]}, "
-        "{v2:.1f} by slerp.",
+        "Where a hinge reverses, a circle through three keyframes may go the long way round. With every {every:d}th "
+        f"frame kept, the largest error of a joint is {{v0:.1f}} degrees for {CIRCULAR[0]}, {{v1:.1f}} for "
+        f"{CIRCULAR[1]} and {{v2:.1f}} for slerp.",
         every=cell("reconstruct", "every", clip=ALL, scheme="slerp", filter=RAW, every=EVERY),
         **{f"v{i}": _largest(cell, name) for i, name in enumerate((*CIRCULAR, "slerp"))},
     )
@@ -87,9 +87,9 @@ def keyframes(cell: Ledger) -> tuple[Part, ...]:
     raw: dict[str, Any] = {"clip": ALL, "filter": RAW, "error_degrees": ALLOWED}
     steady = {**raw, "filter": STEADY}
     return said(
-        "To rebuild every frame within {allowed:g} degrees the schemes need these multiples of slerp's keyframes "
-        f"(geometric mean over {{joints:.0f}} joints): of the motion as it is {_listed('r', '.2f')}; below {{steady}} "
-        f"{_listed('s', '.2f')}.",
+        "To rebuild every frame within {allowed:g} degrees, schemes need these multiples of slerp's number of "
+        f"keyframes (geometric mean over {{joints:.0f}} joints): for the motion as recorded, {_listed('r', '.2f')}; "
+        f"below {{steady}}, {_listed('s', '.2f')}.",
         allowed=cell("reduce", "error_degrees", scheme="slerp", **raw),
         joints=cell("reduce", "compared_joints", scheme="slerp", **raw),
         steady=cell("reduce", "filter", scheme="slerp", **steady),
@@ -102,7 +102,7 @@ def whose(cell: Ledger) -> str:
     """Whose joints they are, as the subject of a sentence that quotes how many."""
     made = cell.values("reconstruct", "clip", scheme="slerp") == sorted([ALL, OWN, *CONTROLS])
     return (
-        "the {joints:.0f} joints of the walk that this project's generator made (no recording was given)"
+        "the {joints:.0f} joints of the walk that this project generates (no recording was given)"
         if made
         else "{joints:.0f} recorded joints"
     )

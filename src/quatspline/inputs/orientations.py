@@ -108,7 +108,7 @@ def _listed(given: Any) -> list[Any]:
     """The quaternions of a list of Rotations, one per keyframe (or one per track)."""
     for i, item in enumerate(given):
         if not hasattr(item, "as_quat"):
-            raise ValueError(f"quaternions[{i}] is no Rotation, as quaternions[0] is: {item!r}")
+            raise ValueError(f"quaternions[{i}] = {item!r}: not a Rotation like quaternions[0]")
     return [item.as_quat(scalar_first=True) for item in given]
 
 

@@ -35,7 +35,7 @@ def explain_times(t: NDArray[Any], knots: FloatArray, spacings: FloatArray) -> N
         i = int(equal[0]) + 1
         raise ValueError(
             f"times[{i}] = {shown(t[i])} is too close to times[{i - 1}] = {shown(t[i - 1])}, "
-            f"{float(knots[i])!r} after times[0]: float64 does not tell them apart"
+            f"{float(knots[i])!r} after times[0]: float64 cannot tell them apart"
         )
     wrong = (spacings < SHORTEST) | (spacings > LONGEST)
     if not wrong.any():

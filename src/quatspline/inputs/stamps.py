@@ -146,7 +146,7 @@ def _of_objects(name: str, given: Any) -> Any:
     for index, item in np.ndenumerate(array):
         moment = _numpy_time(item)
         if moment is None or moment.dtype.kind != first.dtype.kind:
-            raise ValueError(f"{at(name, index)} = {item!r} is no time like {array.flat[0]!r}")
+            raise ValueError(f"{at(name, index)} = {item!r}: not a time like {array.flat[0]!r}")
         moments.append(moment)
     return np.array(moments).reshape(array.shape)
 

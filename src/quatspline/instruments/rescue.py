@@ -50,7 +50,7 @@ def unsolved(report: SolveReport) -> str:
     """What a solve of a single track that did not converge was still short of."""
     after = f"after {report.iterations} iteration{'' if report.iterations == 1 else 's'}"
     if not math.isfinite(report.residual):
-        return f"{after} it still misses keyframes by more than can be told"
+        return f"{after} it still misses keyframes by an unknown amount"
     if report.residual > report.tolerance:
         return f"{after} it still misses keyframes by {report.residual:.2g} rad"
     if not math.isfinite(report.change):

@@ -12,7 +12,7 @@ MOST = 384
 
 
 class MotionFileError(ValueError):
-    """A motion file that cannot be read or written: one sentence of the file, the line and the reason.
+    """A motion file that cannot be read or written: one sentence that names the file, the line and the reason.
 
     Examples
     --------
@@ -27,7 +27,7 @@ class MotionFileError(ValueError):
 
 
 class MotionFileWarning(UserWarning):
-    """A motion file of which something was left out or taken in one of several ways."""
+    """Something in a motion file was left out, or had several readings of which one was chosen."""
 
 
 def warn(path: str | Path, what: str) -> None:

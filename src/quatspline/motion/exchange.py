@@ -26,21 +26,21 @@ def read_motion(
 ) -> Motion:
     r"""Read a recorded motion: .csv, .tum or .txt, .euroc.csv, .kitti, .npz, .bvh, .amc, .gltf, .glb.
 
-    Nothing is swapped, dropped or guessed without a word; an option that says nothing of the format is
-    refused.  docs/recorded-motion.md tells of each format.
+    Nothing is silently swapped, dropped or guessed, and an option that does not apply to the format is
+    refused.  docs/recorded-motion.md describes each format.
 
     Parameters
     ----------
-    path : the file; its suffix tells the format
-    skeleton : the ASF of an AMC; by default the one that it names, or of its own name, beside it
-    rate : frames a second where a file has no times or (BVH, AMC) another rate is meant
-    times : the same as times in seconds (n,), or a file with one per line
-    units : of an AMC's lengths: "cmu" (default) divides by the ASF's unit, "spec" multiplies
-    skip : frames to leave out at the start, such as a pose that a converter added
-    duplicates : rows that repeat a stamp: "refuse", or keep the "first", the "last", their "mean"
-    missing : rows with a number that is blank or nan: "refuse" or "skip"
-    max_gap : seconds between frames beyond which the motion is in pieces
-    animation : which of a glTF's, by name or index
+    path : the file; its suffix decides the format
+    skeleton : the ASF file of an AMC file; by default the one that it names, or one of the same name beside it
+    rate : frames per second, for a file without times or (BVH, AMC) to override its rate
+    times : instead of rate, times in seconds (n,), or a file with one per line
+    units : unit of an AMC's lengths: "cmu" (default) divides by the ASF's unit, "spec" multiplies
+    skip : number of frames to leave out at the start, such as a pose that a converter added
+    duplicates : what to do with rows that repeat a stamp: "refuse" them, or keep the "first", "last" or "mean"
+    missing : what to do with rows that have a blank or nan: "refuse" or "skip"
+    max_gap : seconds between frames beyond which the motion is split into pieces
+    animation : name or index of the animation of a glTF file
 
     Returns
     -------
@@ -64,15 +64,15 @@ def read_motion(
 
 
 def write_motion(path: str | Path, motion: Motion) -> None:
-    """Write a motion by the suffix: .bvh, .glb, .tum or .txt, .csv, .npz; EuRoC as .euroc.csv.
+    """Write a motion in the format of the suffix: .bvh, .glb, .tum or .txt, .csv, .npz; EuRoC as .euroc.csv.
 
-    Whole or not at all; text has full precision, BVH six decimals, GLB float32.  A skeleton that a format
-    cannot hold is left out with a warning.
+    The file is written completely or not at all.  Text has full precision, BVH six decimals, GLB float32.
+    A skeleton that a format cannot hold is left out with a warning.
 
     Raises
     ------
     MotionFileError
-        Where the format cannot hold the motion, an unknown suffix, a file that cannot be written.
+        If the format cannot hold the motion, the suffix is unknown, or the file cannot be written.
 
     Examples
     --------

@@ -60,7 +60,7 @@ def _stamps(
     _refuse_many(steps)
     if step < 1 and steps:
         raise ValueError(
-            f"stamps are integers: samples {float(step):.3g} apart do not fall on stamps of their own"
+            f"stamps are integers: samples {float(step):.3g} apart would fall on the same stamp"
         )
     return _rounded(first, step, steps + 1)
 

@@ -30,7 +30,7 @@ def left_out(motion: Motion, every: int) -> BoolArray:
     for a, b in pairwise(motion.edges):
         out[a:b:every] = out[b - 1] = False
     if not out.any():
-        raise ValueError(f"--keep {every}: of {len(out)} frames none is left out")
+        raise ValueError(f"--keep {every}: leaves out none of {len(out)} frames")
     return out
 
 

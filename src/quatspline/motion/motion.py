@@ -33,25 +33,25 @@ BODY = ("body",)
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """Timed orientations of tracks, with positions and a skeleton where there are some.
+    """Timed orientations of tracks, with positions and a skeleton if there are any.
 
     A single track may be given as (n, 4) and (n, 3).
 
     Attributes
     ----------
-    stamps : (n,), strictly increasing, as the file has them: int64 where they are integers beyond 2**53,
-        float64 otherwise; (n + 1,) where the last is a closed motion's return
+    stamps : (n,), strictly increasing, as in the file: int64 for integers beyond 2**53, float64
+        otherwise; (n + 1,) for a closed motion, whose last stamp is that of the return
     quaternions : (n, J, 4) local, scalar first, as given: unit within `keyframes.NORM_TOLERANCE`
     positions : (len(stamps), J, 3) local, or None
     tracks : the names of joints in the file's order; one body's is "body"
-    skeleton : how joints hang together, or None
-    unit : of positions: "m", or "file" where the file does not say
-    per_second : stamps in a second; 1 where the file names no other unit
-    max_gap : seconds between frames beyond which a motion is in pieces, or None
-    unread : names of what else the file has, which is not carried on
-    note : what a reader of the result must know of how the motion was understood, or ""
-    interpolation : what a glTF does between keyframes: "LINEAR", "STEP", "CUBICSPLINE"; or None
-    in_tangents, out_tangents : those of a CUBICSPLINE's rotations (n, J, 4), scalar first, or None
+    skeleton : the hierarchy of joints, or None
+    unit : unit of positions: "m", or "file" if the file does not say
+    per_second : stamps per second; 1 if the file names no other unit
+    max_gap : seconds between frames beyond which the motion is split into pieces, or None
+    unread : names of other content of the file, which is not carried along
+    note : how an ambiguity in the file was resolved, or ""
+    interpolation : how a glTF file interpolates between keyframes: "LINEAR", "STEP", "CUBICSPLINE"; or None
+    in_tangents, out_tangents : tangents of a CUBICSPLINE's rotations (n, J, 4), scalar first, or None
 
     Examples
     --------
@@ -101,7 +101,7 @@ class Motion:
 
     @property
     def closed(self) -> bool:
-        """Whether the last time is that of a return to the first orientation."""
+        """Whether the last time marks the return to the first orientation."""
         return len(self.stamps) > len(self.quaternions)
 
     def world(self) -> tuple[FloatArray, FloatArray]:
@@ -116,9 +116,9 @@ class Motion:
         return quaternion.normalise(self.quaternions), places
 
     def ends(self) -> dict[str, FloatArray]:
-        """Where end effectors are in the world, (n, 3) by the name of the joint that bears them.
+        """World positions of end effectors, (n, 3), by the name of their joint.
 
-        An end site where a joint has one, otherwise the joint itself if none hangs on it.
+        The end site of a joint that has one; otherwise the joint itself, if it has no children.
         """
         turns, places = self.world()
         ends = {} if self.skeleton is None else self.skeleton.ends
@@ -135,7 +135,7 @@ class Motion:
     # -- parts of it ------------------------------------------------------------------------------
 
     def frames(self, index: slice | NDArray[Any]) -> Motion:
-        """The motion of some frames, in order; the file's tangents serve frames without any left out between."""
+        """The motion of some frames, in order; the file's tangents are kept if no frame between is left out."""
         held = ("stamps", "quaternions", "positions", "in_tangents", "out_tangents")
         arrays = {name: getattr(self, name) for name in held}
         picked = {name: a[index] for name, a in arrays.items() if a is not None}
@@ -145,12 +145,12 @@ class Motion:
         return part.without_tangents()
 
     def without_tangents(self) -> Motion:
-        """The motion without what the file's splines do between its frames."""
+        """The motion without the tangents and interpolation of the file."""
         kept = None if self.interpolation == "CUBICSPLINE" else self.interpolation
         return dataclasses.replace(self, interpolation=kept, in_tangents=None, out_tangents=None)
 
     def aligned(self) -> Motion:
-        """The motion with neighbours in time on one hemisphere, tangents with them."""
+        """The motion with neighbours in time on one hemisphere, and tangents to match."""
         q = quaternion.align(self.quaternions)
         flips = np.where((q == self.quaternions).all(axis=-1, keepdims=True), 1.0, -1.0)
         tangents = {
@@ -191,22 +191,21 @@ class Motion:
     def curve(
         self, scheme: str, every: int = 1, positions: str = "matched", **options: Any
     ) -> MotionCurve:
-        """The curve of a scheme through every so many-th frame and the last, all tracks at once.
+        """The curve of a scheme through every n-th frame and the last one, for all tracks at once.
 
         Parameters
         ----------
         scheme : a name of `quatspline.schemes`
         every : keyframes are the frames 0, every, 2 every, ... and the last
-        positions : "matched" takes the family of curves that is to positions what the scheme is to
-            orientations, with a global scheme's degree and ends; by name: "linear", "catmull-rom",
-            "cubic", "local-quintic", "quartic"
-        **options : of the scheme, and ``closed``, ``align``; ``gltf-cubic`` takes the file's own tangents
-            where there are some, none are given, and no frame is left out
+        positions : "matched" uses the counterpart of the scheme for positions, with the degree and ends of
+            a global scheme; or a family by name: "linear", "catmull-rom", "cubic", "local-quintic", "quartic"
+        **options : options of the scheme, and ``closed``, ``align``; ``gltf-cubic`` uses the file's own
+            tangents if there are any, none are given, and no frame is left out
 
         Raises
         ------
         ValueError
-            On an unknown scheme or option, and what the scheme cannot take.
+            For an unknown scheme or option, or input that the scheme cannot take.
         """
         from quatspline.motion.motion_curve import MotionCurve
 
@@ -226,9 +225,9 @@ class Motion:
         Raises
         ------
         ValueError
-            Neither or both of rate and times, times outside the motion or inside its gaps.
+            If neither or both of rate and times are given, or for times outside the motion or in its gaps.
         ConvergenceError
-            Where a solver fails on a track, which it names.
+            If a solver fails on a track; the error names the track.
         """
         from quatspline.motion.resampling import resampled
 
@@ -243,8 +242,8 @@ class Motion:
         ----------
         scheme : a name of `quatspline.schemes`
         error : the largest local angle (rad) at the frames left out
-        together : one set of keyframes for all joints, not one each
-        **options : of the scheme
+        together : use one set of keyframes for all joints instead of one per joint
+        **options : options of the scheme
 
         Raises
         ------

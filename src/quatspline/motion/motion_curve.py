@@ -37,9 +37,9 @@ class MotionCurve:
 
     Attributes
     ----------
-    motion : that it was made of
-    pieces : between gaps, each with its own curve
-    failures : why tracks have no curve, by their names; they are NaN where the others go on
+    motion : the motion from which it was made
+    pieces : the curves of the stretches between gaps
+    failures : why tracks have no curve, by name; their values are NaN
     """
 
     def __init__(
@@ -62,7 +62,7 @@ class MotionCurve:
             if b - a > 1
         ]
         if not self.pieces:
-            raise ValueError(f"{len(motion.stamps)} frames are no curve: at least 2 are needed")
+            raise ValueError(f"a curve needs at least 2 frames, found {len(motion.stamps)}")
         self.errors: dict[str, Exception] = {}
         for piece in self.pieces:
             self.errors = piece.errors | self.errors
@@ -75,7 +75,7 @@ class MotionCurve:
         Raises
         ------
         ValueError
-            Where the motion is in pieces, which have curves of their own.
+            If the motion is in pieces, which have their own curves.
         """
         if len(self.pieces) > 1:
             raise ValueError(
@@ -85,20 +85,22 @@ class MotionCurve:
 
     @property
     def origin(self) -> Any:
-        """The B-spline of the positions, scipy's, in time since the first keyframe.
+        """The scipy B-spline of the positions, in time since the first keyframe.
 
-        For schemes with a degree (``moving-frame``), and ends that positions take from the scheme: control
+        Exists for schemes with a degree (``moving-frame``).  Positions take the ends from the scheme: control
         points ``.c`` (m, J, 3) on the knots ``.t`` of ``orientation.axes``.
 
         Raises
         ------
         ValueError
-            Where there are no positions, they follow another family, or the motion is in pieces.
+            If there are no positions, they follow another family, or the motion is in pieces.
         """
         if self.motion.positions is None:
             raise ValueError("the motion has no positions")
         if not isinstance(self.family, families.SplineFamily):
-            raise ValueError("the positions are no B-spline: a scheme with a degree makes them one")
+            raise ValueError(
+                "the positions are not a B-spline: only schemes with a degree make them one"
+            )
         times = self.orientation.keyframes.knots
         x = self.motion.positions[self.pieces[0].index]
         return self.family.fitted(times, x, self.motion.closed and np.array_equal(x[0], x[-1]))

@@ -47,7 +47,7 @@ class Reduction:
     Attributes
     ----------
     frames : indices of the frames that are kept, by joint
-    motion : rebuilt from them at the times of the source; positions are the source's
+    motion : the motion rebuilt from them at the times of the source, with the source's positions
     largest : the largest local angle (rad) of a joint at a frame left out
     failures : why the scheme has no curve for a joint, which then keeps all of its frames
     """
@@ -76,7 +76,9 @@ def reduction(
     if motion.closed or len(motion.stamps) < 2:
         raise ValueError("an open motion of at least 2 frames is expected")
     if not catalogue.scheme(scheme).interpolates:
-        raise ValueError(f"{scheme} passes near its keyframes: no choice of them keeps a bound")
+        raise ValueError(
+            f"{scheme} passes near its keyframes, so no choice of keyframes keeps a bound"
+        )
     names = list(motion.tracks)
     groups = [slice(0, len(names))] if together else [slice(k, k + 1) for k in range(len(names))]
     source = quaternion.normalise(motion.quaternions)

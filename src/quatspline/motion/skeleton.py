@@ -27,16 +27,16 @@ class Mounts(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Skeleton:
-    """Joints that hang on joints.
+    """A hierarchy of joints.
 
     Attributes
     ----------
-    parents : (J,) the index of each joint's parent, -1 of a root
-    offsets : (J, 3) where a joint is in its parent's frame at rest
-    orders : the axes about which a joint's file turns it, as "ZXY": intrinsic, the first first; "" where
-        the file has no such order
-    ends : of joints that have an end site, its place (3,) in the joint's frame, by the joint's index
-    mounts : turns (J, 4) and places (J, 3) that are fixed between parent and joint, or None
+    parents : (J,) the index of each joint's parent, -1 for a root
+    offsets : (J, 3) the rest position of each joint in its parent's frame
+    orders : the order of each joint's Euler axes in its file, such as "ZXY": intrinsic, the first one first; ""
+        if the file has no such order
+    ends : the position (3,) of each end site in its joint's frame, by the joint's index
+    mounts : fixed rotations (J, 4) and positions (J, 3) between parent and joint, or None
     """
 
     parents: NDArray[np.int64]
@@ -87,13 +87,13 @@ class Skeleton:
 
     @property
     def leaves(self) -> list[int]:
-        """Joints on which none hangs."""
+        """Joints without children."""
         return sorted(set(range(len(self.parents))) - set(self.parents.tolist()))
 
     def world(self, q: FloatArray, x: FloatArray | None) -> tuple[FloatArray, FloatArray]:
         """Forward kinematics of local quaternions (n, J, 4) and positions (n, J, 3), all frames at once.
 
-        Without positions joints are at their offsets.
+        Without positions, joints are at their offsets.
         """
         local = np.ascontiguousarray(np.moveaxis(quaternion.normalise(q), 1, 0))
         given = np.broadcast_to(self.offsets, (len(q), *self.offsets.shape)) if x is None else x

@@ -28,18 +28,22 @@ LARGE = 1e3
 SUPERSCRIPTS = {0: "C⁰", 1: "C¹", 2: "C²"}
 
 COLUMNS = (
-    ("scheme", "scheme", "linked to its derivation where the documentation lies beside the page"),
-    ("smooth", "Cᵏ", "continuity measured at steps of 60 degrees, and at worst"),
+    ("scheme", "scheme", "linked to its derivation if the documentation is next to the page"),
+    ("smooth", "Cᵏ", "continuity measured at steps of 60 degrees, and the worst measured anywhere"),
     ("local", "local", "keyframes that shape a segment, and how many of them come after it"),
     ("order", "order", "order of the error on a smooth motion; more is better"),
     ("torque", "torque", "median torque energy over the least possible; less is better"),
-    ("failure", "worst failure", "the gravest that was found"),
-    ("time", "ns per sample", "of 10,000 samples or the most measured; less is better"),
-    ("closes", "closes", "whether it runs closed"),
+    ("failure", "worst failure", "the most serious failure found"),
+    (
+        "time",
+        "ns per sample",
+        "time per sample, of 10,000 samples or the most measured; less is better",
+    ),
+    ("closes", "closes", "whether the scheme has closed curves"),
     (
         "origin",
-        "whose",
-        "ours, published by others and written here, or a library, with its version",
+        "origin",
+        "ours, published by others and implemented here, or a library with its version",
     ),
 )
 """Key, heading and meaning of each column."""

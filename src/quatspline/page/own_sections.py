@@ -13,7 +13,7 @@ OWN: tuple[Section, ...] = (
     Section(
         "compare",
         "Schemes compared",
-        "One row per scheme on these keyframes. Sort by any column: the line above the table states the criterion.",
+        "One row per scheme on these keyframes. Sort by any column; the line above the table states the criterion.",
         ("compare",),
         (
             Plot(
@@ -35,7 +35,8 @@ KEPT: tuple[Section, ...] = (
     Section(
         "kept",
         "Schemes compared",
-        "One row per scheme, at frames left out. Sort by any column: the line above the table states the criterion.",
+        "One row per scheme, measured at the frames left out. Sort by any column; the line above the table states the "
+        "criterion.",
         ("kept", "joints"),
         (
             Plot(

@@ -22,34 +22,34 @@ RANKINGS: dict[str, Ranking] = {
     "fairness": Ranking(
         "median",
         False,
-        "the median over the keyframe sets of the torque energy over the least possible; less is better",
+        "the torque energy relative to the least possible, median over the keyframe sets; less is better",
         {"data": "committed"},
     ),
     "compare": Ranking(
         "torque_over_least",
         False,
-        "torque energy over the least of all schemes compared; less is better",
+        "the torque energy relative to the least of all schemes compared; less is better",
     ),
     "kept": Ranking(
         "rms_median",
         False,
-        "the median over the joints of their rms angles at the frames left out; less is better",
+        "the rms angle at the frames left out, median over the joints; less is better",
     ),
     "choosing": Ranking(
         "torque",
         False,
-        "the median over the committed keyframe sets of the torque energy over the least possible; less is better",
+        "the torque energy relative to the least possible, median over the committed keyframe sets; less is better",
     ),
     "reconstruct": Ranking(
         "over_slerp",
         False,
-        "the rms angle at the frames left out over slerp's, geometric mean over the joints; less is better",
+        "the rms angle at the frames left out relative to slerp's, geometric mean over the joints; less is better",
         {"clip": ALL},
     ),
     "reduce": Ranking(
         "over_slerp",
         False,
-        "the keyframes that are needed over slerp's, geometric mean over the joints; less is better",
+        "the number of keyframes needed relative to slerp's, geometric mean over the joints; less is better",
         {"clip": ALL},
     ),
     "excursion": Ranking(
@@ -58,5 +58,5 @@ RANKINGS: dict[str, Ranking] = {
         "the largest angle from the keyframe during a hold ten times as long as the moves beside it; less is better",
         {"data": "hold 10 : 1"},
     ),
-    "claims": Ranking("verdict", False, "the verdict: what departs comes first"),
+    "claims": Ranking("verdict", False, "the verdict: departures come first"),
 }

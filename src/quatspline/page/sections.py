@@ -42,8 +42,8 @@ SECTIONS: tuple[Section, ...] = (
     Section(
         "choosing",
         "Which scheme?",
-        "Answer what you know; the schemes that qualify remain, the least torque first. The address holds the "
-        "answers, so that a view can be shared.",
+        "Answer the questions that you can. The schemes that qualify remain, with the least torque first. The address "
+        "holds your answers, so you can share the view.",
         ("choosing",),
         (
             Plot(
@@ -63,9 +63,9 @@ SECTIONS: tuple[Section, ...] = (
     Section(
         "paper",
         "The paper, reproduced",
-        "Table 1 as the paper prints it, with what is measured here beside it. The paper fits its B-spline anew for "
-        "every frame; fitted once, the same curve costs less, so both protocols stand there. Its seconds come from "
-        "another machine: compare ratios.",
+        "Table 1 as the paper prints it, with our measurements beside it. The paper fits its B-spline again for "
+        "every frame. Fitted once, the same curve costs less, so both protocols are shown. The paper's seconds come "
+        "from another machine: compare ratios.",
         ("table1", "figure3", "figure4", "figure1", "figure2"),
         block="table1",
         topics=("reproduction", "protocol"),
@@ -74,8 +74,8 @@ SECTIONS: tuple[Section, ...] = (
     Section(
         "motions",
         "The motions",
-        "The same keyframes under two schemes. The arrow on the body is its angular velocity; the curve beside it is "
-        "the path of the unit quaternion, with the tangents that arrive at each keyframe and leave it. Where they "
+        "The same keyframes under two schemes. The arrow on the body is its angular velocity. The curve beside it is "
+        "the path of the unit quaternion, with the arriving and the leaving tangent at each keyframe. Where the two "
         "form a corner, the velocity jumps.",
         block="player",
         needs="scenes",
@@ -83,24 +83,24 @@ SECTIONS: tuple[Section, ...] = (
     Section(
         "draw",
         "Draw your own",
-        "Go to a keyframe and drag the body to turn it; drag its number on the timeline to move it in time. Five "
-        "schemes are computed in this page, as the package computes them.",
+        "Go to a keyframe and drag the body to turn it; drag its number on the timeline to move it in time. This page "
+        "computes five schemes exactly as the package does.",
         block="draw",
         needs="scenes",
     ),
     Section(
         "log-curves",
         "Log-curves",
-        "ln q(t), half the rotation vector, in rad. Drag to turn, scroll to zoom; a click in the legend hides a "
-        "curve or shows it.",
+        "ln q(t), half the rotation vector, in rad. Drag to turn and scroll to zoom. A click in the legend hides or "
+        "shows a curve.",
         block="logs",
         needs="scenes",
     ),
     Section(
         "rates",
         "Angular velocity and acceleration",
-        "Norms of the body's rates along the motion; keyframes are marked. A curve that is C2 has no step in the "
-        "lower strip.",
+        "Norms of the body's angular velocity and acceleration along the motion, with keyframes marked. A C2 curve has "
+        "no step in the lower strip.",
         block="rates",
         needs="scenes",
     ),
@@ -134,7 +134,7 @@ SECTIONS: tuple[Section, ...] = (
     Section(
         "accuracy",
         "Accuracy",
-        "Error to an analytic motion against the keyframe spacing; what stands in for slerp, against slerp.",
+        "The error relative to an analytic motion, by keyframe spacing, and the error of substitutes for slerp.",
         ("accuracy", "slerp-variants"),
         (
             Plot(
@@ -150,7 +150,8 @@ SECTIONS: tuple[Section, ...] = (
     Section(
         "cost",
         "Cost",
-        "Set-up and evaluation apart. Compare seconds within one run only; counts change on no machine.",
+        "Set-up and evaluation are timed separately. Compare seconds only within one run; counts are the same on every "
+        "machine.",
         ("cost",),
         (
             Plot(
@@ -166,20 +167,20 @@ SECTIONS: tuple[Section, ...] = (
     Section(
         "speed",
         "Speed",
-        "Bounds, what was measured, and whether they are met. Ratios are between rows of one run.",
+        "Bounds, the measured values, and whether the bounds are met. Ratios compare rows of the same run.",
         ("speed",),
         block="speed",
     ),
     Section(
         "continuity",
         "Continuity",
-        "Jumps of one-sided limits at keyframes, and the k of C^k that follows.",
+        "Jumps between one-sided limits at keyframes, and the resulting k of C^k.",
         ("continuity",),
     ),
     Section(
         "fairness",
         "Fairness",
-        "How much more a curve turns and accelerates than it must.",
+        "How much more a curve turns and accelerates than it has to.",
         ("fairness",),
     ),
     Section(
@@ -191,7 +192,8 @@ SECTIONS: tuple[Section, ...] = (
     Section(
         "robustness",
         "Invariance, locality, noise, edge cases",
-        "What a change of the frame, of one keyframe or of all a little does to a curve, and what hard keyframes do.",
+        "How a curve responds to another frame of reference, to a change of one keyframe, to small errors in all of "
+        "them, and to hard keyframes.",
         ("invariance", "locality", "noise", "edge-cases"),
         (
             Plot(
@@ -206,8 +208,8 @@ SECTIONS: tuple[Section, ...] = (
     Section(
         "recorded",
         "Recorded motion",
-        "What people record, rebuilt from every so many-th frame: the motion itself is pale, two schemes lie over it, "
-        "and below stands by what angle they are off.",
+        "Recorded motion, rebuilt from every n-th frame. The recorded motion is pale, two schemes are drawn over it, "
+        "and the plot below shows their error angle.",
         ("reconstruct", "reduce"),
         (
             Plot(
@@ -232,7 +234,7 @@ SECTIONS: tuple[Section, ...] = (
         topics=(TOPIC,),
         folded=True,
     ),
-    Section("claims", "Claims and verdicts", "Each claim beside what was measured.", ("claims",)),
+    Section("claims", "Claims and verdicts", "Each claim, beside what was measured.", ("claims",)),
 )
 
 OTHER = Section("other", "Further measurements")

@@ -10,7 +10,7 @@ stem with hyphens.  It holds
 ``cells(run)``, ``measure_cell(run, **cell)``  the same in parts that run side by side (see `sweeps`)
 ``derive(run, read) -> DataFrame``  a table made of others of the folder, by name: run after them
 ``draw(table) -> Figure``        optional: the figure, drawn from the table as read from its file
-``caption(table) -> str``        optional: what the figure shows
+``caption(table) -> str``        optional: what the figure shows, where there is one
 ``replays(run) -> list``         optional: motions for the page's player, each made by `quatspline.motion.replay`
 ``text(table) -> str``           optional: Markdown that follows the table in its Markdown copy
 ``FORMATS: dict[str, str]``      optional: format specifications of columns in the Markdown

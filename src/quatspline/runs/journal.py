@@ -75,7 +75,9 @@ class Kept:
         self.path = results.folder / FOLDER / f"{name}.jsonl"
         self.path.parent.mkdir(exist_ok=True)
         if self.path.is_symlink():
-            raise ValueError(f"{self.path}: is a link, where finished cells are to be kept")
+            raise ValueError(
+                f"{self.path}: is a link, and finished cells are not written through links"
+            )
         clear_asides(self.path.parent)
         self.fingerprint = fingerprint
         self.rows: dict[str, list[dict[str, Any]]] = {}

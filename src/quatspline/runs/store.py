@@ -79,11 +79,11 @@ class Store:
         for given in inputs:
             if any(same_file(given, path) for path in paths):
                 raise ValueError(
-                    f"{given}: is read here, so it is not written over: name another --out"
+                    f"{given}: is also read here, so it is not overwritten: name another --out"
                 )
         for path in paths:
             if path.exists() and not path.is_file():  # nor a link to one
-                raise ValueError(f"{path}: is no plain file, where one is to be written")
+                raise ValueError(f"{path}: not a regular file, so it cannot be written")
         foreign = [path for path in paths if not self.force and self._foreign(path.name)]
         if foreign:
             more = f" and {len(foreign) - 1} more" if len(foreign) > 1 else ""

@@ -177,12 +177,19 @@ def _serve(pipe: connection.Connection, parent: int, memory: int) -> None:
     with suppress(OSError):  # standard error is closed
         os.dup2(2, 1)  # standard output is the command's own, whatever libraries print
     sys.stdout = sys.stderr
-    pipe.send(None)  # begun: importing all this took no task's time
-    while True:
+    told: object = None  # begun: importing all this took no task's time
+    while _awaited(pipe, told):
         try:
             function, arguments = pipe.recv()
         except (EOFError, OSError):
             return
-        done = function(*arguments)
-        with suppress(BrokenPipeError):  # nobody waits for it any more
-            pipe.send(done)
+        told = function(*arguments)
+
+
+def _awaited(pipe: connection.Connection, told: object) -> bool:
+    """Send what the command waits for; False where it has ended."""
+    try:
+        pipe.send(told)
+    except OSError:
+        return False
+    return True

@@ -14,8 +14,8 @@ from quatspline.timing.budget import Budget, Call, calls
 from quatspline.timing.cost import fitted_whole
 from quatspline.timing.interleaved import timed
 
-BUDGET = Budget(limit=2e7, meter=calls)
-"""Of a library's scheme, about five seconds, unless it is asked for by name."""
+BUDGET = Budget(limit=1e7, meter=calls)
+"""Of a library's scheme, two seconds or so, unless it is asked for by name."""
 SAMPLES = (400, 20, 20)
 """That instruments take of a scheme for a segment: of orientations, and of the rates that it offers."""
 

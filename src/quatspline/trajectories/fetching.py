@@ -131,7 +131,9 @@ def _check(folder: Path, mirror: str | None) -> None:
     if importlib.util.find_spec("pooch") is None:
         raise ValueError("motions needs the extra: pip install 'quatspline[motions]'")
     if mirror is not None and urlsplit(mirror).scheme not in ("http", "https"):
-        raise ValueError(f"--from {mirror}: an address that begins with http:// or https://")
+        raise ValueError(
+            f"--from {mirror}: expected an address that begins with http:// or https://"
+        )
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -183,7 +185,7 @@ def download(path: Path, address: str, remote: Remote) -> None:
         with replacing(path) as aside:
             pooch.HTTPDownloader(timeout=PATIENCE)(address, str(aside), None)
             if digest(aside.read_bytes()) != remote.numbers:
-                raise ValueError(f"{address} holds other numbers than the clip measured here")
+                raise ValueError(f"{address} does not hold the numbers of the clip measured here")
     except requests.HTTPError as error:
         raise ValueError(str(error)) from None
     except (requests.ConnectionError, requests.Timeout):

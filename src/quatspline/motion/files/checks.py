@@ -139,7 +139,7 @@ def check_times(
     faults.add(
         rows[before[~equal] + 1],
         lambda row: (
-            f"{stamp(row)} is too close to the stamp before it: float64 does not tell them "
+            f"{stamp(row)} is too close to the stamp before it: float64 cannot tell them "
             "apart; give integers, or times since the first"
         ),
     )

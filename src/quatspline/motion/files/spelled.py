@@ -36,7 +36,7 @@ def exact(spelled: Sequence[str], times: FloatArray) -> Times:
 
 
 def same(one: str, other: str) -> bool:
-    """Whether two spellings that float64 does not tell apart are of one number."""
+    """Whether two spellings that float64 cannot tell apart are of one number."""
     return _decimal(one) == _decimal(other)
 
 

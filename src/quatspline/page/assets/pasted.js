@@ -22,16 +22,16 @@ quatspline.pasted = (() => {
     const heading = headed ? lines.shift().map((name) => name.toLowerCase()) : [];
     const order = Object.values(COLUMNS).map((names) => heading.findIndex((name) => names.includes(name)));
     const lacking = Object.keys(COLUMNS).filter((_, k) => order[k] < 0);
-    if (headed && lacking.length) return { wrong: `The first line names no column ${lacking.join(", ")}: t,w,x,y,z are needed.` };
+    if (headed && lacking.length) return { wrong: `The first line does not name ${lacking.join(", ")}: the columns t,w,x,y,z are needed.` };
     const rows = lines.map((fields) => (headed ? order.map((j) => number(fields[j])) : fields.map(number)));
     return { rows, wrong: fault(rows) };
   }
 
   /* What keeps rows from being keyframes; nothing where they are. */
   function fault(rows) {
-    if (rows.length < 2) return "Two lines at least are needed, each t,w,x,y,z.";
+    if (rows.length < 2) return "At least two lines are needed, each with t,w,x,y,z.";
     for (const [k, row] of rows.entries()) {
-      if (row.length !== 5 || !row.every(Number.isFinite)) return `Keyframe ${k}: five numbers are expected, t,w,x,y,z.`;
+      if (row.length !== 5 || !row.every(Number.isFinite)) return `Keyframe ${k}: expected five numbers, t,w,x,y,z.`;
       if (Math.abs(row[0]) > LATEST) return `Keyframe ${k}: its time ${row[0]} is beyond ${LATEST}.`;
       if (Math.hypot(...row.slice(1)) < LEAST) return `Keyframe ${k}: its quaternion has no length.`;
       if (k && !(row[0] > rows[k - 1][0])) return `Keyframe ${k}: its time ${row[0]} does not come after ${rows[k - 1][0]}.`;

@@ -74,7 +74,7 @@ quatspline.Recording = class extends quatspline.Sampled {
   /* What is shown of it, and where it comes from. */
   told() {
     const { every, frames: [first, last, all], source } = this, kept = { 2: "2nd", 3: "3rd" }[every] || `${every}th`;
-    const part = last - first + 1 + every < all ? `Shown are frames ${first} to ${last} of ${all}. ` : "";
+    const part = last - first + 1 + every < all ? `Showing frames ${first} to ${last} of ${all}. ` : "";
     return `Rebuilt from every ${kept} frame. ${part}${source}`.trim();
   }
 

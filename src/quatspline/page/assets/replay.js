@@ -65,13 +65,13 @@ quatspline.Replay = class extends quatspline.Clock {
   _label(sides, joint, name, part) {
     const { motion, place } = this, caption = (part, text) => { place.querySelector(part).textContent = text; };
     const names = sides.map(({ side, curve }) => `${side.toUpperCase()} ${curve.name} ${side === "a" ? "solid" : "dashed"}`).join(", ");
-    const near = motion.upright ? `What ${motion.joints[joint]} moves` : "The body's way";
-    caption("figcaption.figure", `Pale: the motion itself. ${names}. The ring marks what is seen from near.`);
+    const near = motion.upright ? `The point moved by ${motion.joints[joint]}` : "The body's path";
+    caption("figcaption.figure", `Pale: the motion itself. ${names}. The ring marks the close-up.`);
     caption("figcaption.near", `${near}, from near; circles are keyframes.`);
-    caption("figcaption.error", `Angle (degrees) to the motion itself: ${motion.upright ? name : "the body"}. Grey lines are keyframes.${part}`);
+    caption("figcaption.error", `Angle (degrees) from the motion itself: ${motion.upright ? name : "the body"}. Grey lines are keyframes.${part}`);
     this.views[0].canvas.setAttribute("aria-label", `The motion itself as a pale figure, with ${names}`);
     this.views[1].canvas.setAttribute("aria-label", `${near}, from near: the motion itself and ${names}`);
-    this.strips[0].view.canvas.setAttribute("aria-label", `Angle to the motion itself over time, ${name}: ${names}`);
+    this.strips[0].view.canvas.setAttribute("aria-label", `Angle from the motion itself over time, ${name}: ${names}`);
   }
 
   /* What is drawn now: for tests, and for whoever asks the console. */

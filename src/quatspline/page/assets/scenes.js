@@ -94,7 +94,7 @@ quatspline.MotionPlot = class {
     this.chart.hidden = waits;
     if (waits) this._offer(motion);
     else if (log && !quatspline.MotionPlot.canTurn()) {
-      this.chart.textContent = "This browser offers no WebGL, which this plot needs; the player above turns the same curves.";
+      this.chart.textContent = "This plot needs WebGL, which this browser does not offer; the player above shows the same curves.";
     } else if (log) this._log(motion);
     else this._rates(motion);
   }
