@@ -32,7 +32,7 @@ from quatspline.fitting.bspline import (
     write_segments,
 )
 from quatspline.fitting.bspline_rows import descend, solve
-from quatspline.fitting.newton import copy, moved
+from quatspline.fitting.newton import STALLED, copy, moved
 from quatspline.inputs.arrays import at, real_array, refuse_infinite
 from quatspline.kernels.jit import CHANGE, ITERATIONS, REACH, RESIDUAL, compiled, fit_kernel
 from quatspline.kernels.quick import exp, log
@@ -46,7 +46,7 @@ from quatspline.kernels.values import (
     vec_column,
 )
 from quatspline.keyframes import Keyframes
-from quatspline.options import LARGEST, Count, OnFailure, Positive, Stop
+from quatspline.options import LARGEST, Iterations, OnFailure, Positive, Stop
 from quatspline.quaternion import FloatArray
 from quatspline.segments import SegmentCurve
 
@@ -83,7 +83,7 @@ def relax(problem, w, d, tolerance, by_change, limit):
         updates, change = updates + 1, moved(fresh, d, n if cyclic else n + 1)
         copy(fresh, d, 1.0)
         increments(d, w)
-        if by_change and change <= tolerance:
+        if change <= STALLED or (by_change and change <= tolerance):
             break
     return updates, change
 
@@ -188,7 +188,7 @@ class Kim(SegmentCurve):
         method: Literal["newton", "fixed-point"] = "newton",
         stop: Stop = "residual",
         tolerance: Positive = 1e-6,
-        max_iterations: Count | None = None,
+        max_iterations: Iterations | None = None,
         on_failure: OnFailure = "raise",
     ) -> None:
         if keyframes.closed and ends == "clamped":

@@ -13,7 +13,7 @@ from quatspline.fitting.smoothing import REST
 from quatspline.fitting.weights import positive
 from quatspline.kernels.jit import REACH
 from quatspline.keyframes import Keyframes
-from quatspline.options import Count, OnFailure, Positive
+from quatspline.options import Iterations, OnFailure, Positive
 from quatspline.segments import SegmentCurve
 
 
@@ -64,7 +64,7 @@ class LeastSquaresSpline(SegmentCurve):
         knots: Any = None,
         weights: Any = None,
         tolerance: Positive = 1e-10,
-        max_iterations: Count = 100,
+        max_iterations: Iterations = 100,
         on_failure: OnFailure = "raise",
     ) -> None:
         self.knots = knots_of(keyframes, knots)

@@ -11,13 +11,16 @@ from quatspline.families.rotation_vector import ROTATION_VECTOR
 from quatspline.fitting.least_torque import minimise
 from quatspline.kernels.jit import REACH
 from quatspline.keyframes import Keyframes
-from quatspline.options import AtMost, Count, OnFailure, Positive
+from quatspline.options import AtMost, Count, Iterations, OnFailure, Positive
 from quatspline.proposed.local_quintic import LocalQuinticSpline
 from quatspline.quaternion import FloatArray
 from quatspline.segments import SegmentCurve
 
 ROWS = 8000
 """Rows of array algebra that an iteration's work on one node counts as, see `engine.run`."""
+
+MOST = 1_000_000
+"""Subintervals, of 1.3 kB each while they are solved for."""
 
 HIT = 1e-9
 """Largest miss at a keyframe in rad, where the tolerance is less: keyframes are nodes, so that a miss
@@ -69,10 +72,15 @@ class MinimumTorqueSpline(SegmentCurve):
         *,
         subintervals: Annotated[Count, AtMost(1000)] = 4,
         tolerance: Positive = 1e-6,
-        max_iterations: Count = 200,
+        max_iterations: Iterations = 200,
         on_failure: OnFailure = "raise",
     ) -> None:
         m = subintervals
+        pieces = keyframes.tracks.shape[0] * keyframes.spacings.size * m
+        if pieces > MOST:
+            raise ValueError(
+                f"subintervals={m}: {pieces:,} of them are too many, at most {MOST:,} are solved for"
+            )
         h = np.repeat(keyframes.spacings / m, m)
         knots = np.append(keyframes.inside(np.arange(m) / m), keyframes.knots[-1])
         nodes, rates = _start(keyframes, knots, m)

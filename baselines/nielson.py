@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from quatspline.families.nested import TRIANGLE
 from quatspline.fitting.bezier import set_controls
+from quatspline.fitting.newton import STALLED
 from quatspline.fitting.nu_rows import newton_legs
 from quatspline.kernels.jit import (
     CHANGE,
@@ -22,7 +23,7 @@ from quatspline.kernels.jit import (
 )
 from quatspline.kernels.values import arc, keyframe, norm, put_quat, quat_at, slerp
 from quatspline.keyframes import Keyframes
-from quatspline.options import Count, OnFailure, Positive, Stop, per_keyframe
+from quatspline.options import Iterations, OnFailure, Positive, Stop, per_keyframe
 from quatspline.segments import SegmentCurve
 
 METHOD, BY_RESIDUAL, TOLERANCE, LIMIT, STATIONARY, TENSION = range(6)
@@ -30,9 +31,6 @@ METHOD, BY_RESIDUAL, TOLERANCE, LIMIT, STATIONARY, TENSION = range(6)
 
 METHODS = ("jacobi", "gauss-seidel", "newton")
 JACOBI, GAUSS_SEIDEL, NEWTON = range(3)
-
-STALLED = 4 * np.finfo(float).eps
-"""A relative change this small moves nothing any more."""
 
 
 class Nielson(SegmentCurve):
@@ -83,7 +81,7 @@ class Nielson(SegmentCurve):
         method: Literal["jacobi", "gauss-seidel", "newton"] = "jacobi",
         stop: Stop = "residual",
         tolerance: Positive = 1e-6,
-        max_iterations: Count = 2000,
+        max_iterations: Iterations = 2000,
         on_failure: OnFailure = "raise",
     ) -> None:
         nu = per_keyframe("tension", tension, keyframes.count, math.inf)

@@ -18,7 +18,7 @@ from quatspline.fitting.bspline import (
     weight_before,
 )
 from quatspline.fitting.mean_leaps import leaps, share_a_half
-from quatspline.fitting.newton import ARMIJO, CAP, SHORTEST
+from quatspline.fitting.newton import ARMIJO, CAP, SHORTEST, STALLED
 from quatspline.kernels.jacobians import inverse_jacobian_matrix
 from quatspline.kernels.jit import (
     CHANGE,
@@ -31,7 +31,7 @@ from quatspline.kernels.jit import (
 )
 from quatspline.kernels.values import exp, keyframe, log, norm, put_quat, quat_at, unit, vec_at
 from quatspline.keyframes import Keyframes
-from quatspline.options import Count, OnFailure, Positive, Stop
+from quatspline.options import Iterations, OnFailure, Positive, Stop
 from quatspline.segments import SegmentCurve
 
 ROUNDING = 1e-28
@@ -80,7 +80,7 @@ class SphericalAverage(SegmentCurve):
         ends: Literal["natural", "clamped"] = "natural",
         stop: Stop = "residual",
         tolerance: Positive = 1e-6,
-        max_iterations: Count = 100,
+        max_iterations: Iterations = 100,
         on_failure: OnFailure = "raise",
     ) -> None:
         clamped = ends == "clamped" and not keyframes.closed
@@ -171,7 +171,7 @@ def _iterate(problem, d, parameters, report):
             change = _update(d, old, first, work[3], length)
             total, worst = _look(problem, d)
         count += 1
-        if not by_residual and change <= tolerance:
+        if change <= STALLED or (not by_residual and change <= tolerance):
             break
     report[ITERATIONS], report[CHANGE] = count, change
 

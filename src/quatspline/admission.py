@@ -15,6 +15,7 @@ import hashlib
 import json
 import os
 import signal
+import stat
 import subprocess
 import sys
 import tempfile
@@ -29,6 +30,7 @@ import numpy as np
 from quatspline import quaternion
 from quatspline.curve import Curve
 from quatspline.engines import engine
+from quatspline.inputs.arrays import FloatArray
 from quatspline.system import limits
 from quatspline.system.atomic import replacing
 from quatspline.system.caching import cache_base
@@ -44,6 +46,8 @@ GRACE = 5.0
 """Seconds after its limit in which a process that nobody ended ends itself."""
 TRIED = "tried"
 """The folder of verdicts in that of the cache."""
+LARGEST = 2**21
+"""Bytes of a file of schemes: Python takes up to 260 times as many to compile it."""
 PENDING = "it is being tried before it is imported"
 """Why a plug-in cannot be used by another that is tried itself."""
 
@@ -65,16 +69,28 @@ def take(known: Mapping[str, str | None]) -> None:
 
 def refusals(plugins: Sequence[Plugin]) -> dict[Plugin, str]:
     """Why some plug-ins are not to be imported; new ones are tried, side by side."""
-    digests = {plugin: _digest(plugin) for plugin in plugins}
+    unread = {plugin: why for plugin in plugins if (why := _no_source(plugin)) is not None}
+    digests = {plugin: _digest(plugin) for plugin in plugins if plugin not in unread}
     new = [plugin for plugin, digest in digests.items() if _remembered(digest) is Ellipsis]
     if new and _on_trial:
-        return dict.fromkeys(new, PENDING)
+        return unread | dict.fromkeys(new, PENDING)
     if new:
         with ThreadPoolExecutor(min(len(new), os.cpu_count() or 1)) as pool:
             for plugin, verdict in zip(new, pool.map(_tried, new), strict=True):
                 _remember(digests[plugin], verdict)
     found = {plugin: _verdicts.get(digest) for plugin, digest in digests.items()}
-    return {plugin: verdict for plugin, verdict in found.items() if verdict is not None}
+    return unread | {plugin: verdict for plugin, verdict in found.items() if verdict is not None}
+
+
+def _no_source(plugin: Plugin) -> str | None:
+    """Why what is at a path cannot be a file of schemes: to open a pipe or a device may never end."""
+    with suppress(OSError):  # why it cannot be looked at is told when it is imported
+        there = isinstance(plugin, Path) and plugin.stat()
+        if there and not stat.S_ISREG(there.st_mode):
+            return "it is no file"
+        if there and there.st_size > LARGEST:
+            return f"it has {there.st_size:,} bytes: a file of schemes has {LARGEST:,} at most"
+    return None
 
 
 # -- what is remembered -------------------------------------------------------------------------
@@ -84,9 +100,9 @@ def _digest(plugin: Plugin) -> str:
     """A hash of what is tried: the file, private modules beside it, Python and the limits."""
     parts = [sys.version.encode(), repr(limits.seconds(limits.TRIAL_SECONDS)).encode()]
     if isinstance(plugin, Path):
-        paths = [plugin, *sorted(plugin.parent.glob("_*.py"))]
-        with suppress(OSError):  # a file that cannot be read is told when it is imported
-            parts += [path.read_bytes() for path in paths]
+        for path in [plugin, *sorted(plugin.parent.glob("_*.py"))]:
+            with suppress(OSError):  # a file that cannot be read is told when it is imported
+                parts += [b"" if _no_source(path) else path.read_bytes()]
     else:
         dist = plugin.dist
         parts += [repr((dist and dist.name, dist and dist.version, plugin.value)).encode()]
@@ -203,11 +219,18 @@ def _flaw(scheme: type[Curve]) -> str | None:
     count = max(KEYFRAMES, scheme.min_keyframes)
     curve = scheme(None, quaternion.exp(np.outer(np.linspace(0.0, 2.0, count), (0.3, 0.4, 0.5))))
     t = np.linspace(0.0, count - 1.0, 4 * count + 1)
-    lengths = np.linalg.norm(curve(t), axis=-1)
-    off = np.flatnonzero(~(np.abs(lengths - 1.0) <= UNIT))  # NaN is off, too
-    if len(off):
-        where = f"length {lengths[off[0]]:.6g} at t = {t[off[0]]:g}"
-        return f"its orientations are no unit quaternions: {where}"
+    if (flaw := no_unit(curve, t)) is not None:
+        return flaw
     for order in curve.orders:  # rates may be wrong; they have to end
         curve(t, order)
     return None
+
+
+def no_unit(curve: Curve, t: FloatArray) -> str | None:
+    """What is wrong with the lengths of a curve's orientations; None where they are units."""
+    lengths = np.linalg.norm(curve(t), axis=-1)
+    off = np.flatnonzero(~(np.abs(lengths - 1.0) <= UNIT))  # NaN is off, too
+    if not len(off):
+        return None
+    where = f"length {lengths[off[0]]:.6g} at t = {t[off[0]]:g}"
+    return f"its orientations are no unit quaternions: {where}"

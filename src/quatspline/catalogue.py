@@ -91,7 +91,8 @@ def names() -> list[str]:
 
 def _files(places: tuple[Path, ...]) -> tuple[Path, ...]:
     files = [path for folder in places for path in sorted(folder.glob("[!_]*.py"))]
-    once = {path.resolve(): path for path in reversed(files)}  # the first folder that has it
+    # Of one file in several folders, the first. (`Path.resolve` raises where links go round.)
+    once = {os.path.realpath(path): path for path in reversed(files)}
     return tuple(reversed(once.values()))
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from quatspline import keyframes as kf
+from quatspline.admission import no_unit
 from quatspline.catalogue import scheme, schemes
 from quatspline.curve import Curve
 from quatspline.engines.engine import always_compiled
@@ -21,6 +22,7 @@ from quatspline.instruments.told_noise import told_noise
 from quatspline.instruments.trials import Row, attempted
 from quatspline.keyframes import Keyframes
 from quatspline.options import among, declared_by, nearest
+from quatspline.runs import rehearsal
 from quatspline.runs.experiment import Run
 from quatspline.solving import ConvergenceError
 from quatspline.timing.own_keyframes import left_out, seconds_of
@@ -125,8 +127,10 @@ def compared(
     check_options(options, names)
     rows: list[Row] = []
     curves: dict[str, Curve] = {}
+    asked = named is not None
+    failed = rehearsal.failures(_alone, names, keyframes, dict(options), asked)
     for name in Run(quick=True).progress(names, label="compare"):
-        reason = left_out(name, keyframes.count) if named is None else None
+        reason = failed.get(name) or _left_out(name, keyframes, asked)
         measure = partial(_row, name, keyframes, curves, options)
         row = attempted(measure)[0] if reason is None else {"failure": reason}
         rows.append({"scheme": name} | row)
@@ -139,6 +143,26 @@ def compared(
         table[f"{name}_over_least"] = _over_least(table[name], table["misses"] <= MET)
     table = table.sort_values(["torque", "scheme"], na_position="last", ignore_index=True)
     return table, curves
+
+
+def _left_out(name: str, keyframes: Keyframes, asked: bool) -> str | None:
+    """Why a scheme that nobody asked for by name is not measured."""
+    return None if asked else left_out(name, keyframes.count)
+
+
+def _alone(name: str, keyframes: Keyframes, options: Mapping[str, Any], asked: bool) -> None:
+    """All that is asked of one scheme, whose orientations have to be unit quaternions."""
+    if _left_out(name, keyframes, asked) is not None:
+        return
+    try:
+        curve, _ = _solved(name, keyframes, options)
+    except ConvergenceError:  # a row in words, soon
+        return
+    if flaw := no_unit(curve, keyframes.inside([0.0, 0.5, 1.0])):
+        raise ValueError(flaw)
+    curves: dict[str, Curve] = {}
+    _row(name, keyframes, curves, options)
+    seconds_of(keyframes, curves)
 
 
 def _over_least(values: pd.Series, passes: pd.Series) -> pd.Series:
@@ -180,14 +204,21 @@ def told(options: Mapping[str, Any]) -> str:
     return f" Options, of the schemes that have them: {listed}." if listed else ""
 
 
+def _solved(
+    name: str, keyframes: Keyframes, options: Mapping[str, Any]
+) -> tuple[Curve, str | None]:
+    """The curve of one scheme, and how it was found where not as published."""
+    cls = scheme(name)
+    given = among(cls, {"tolerance": TOLERANCE} | dict(options))
+    return solved(cls, keyframes, **given)
+
+
 def _row(
     name: str, keyframes: Keyframes, curves: dict[str, Curve], options: Mapping[str, Any]
 ) -> list[Row]:
     """The row of one scheme; its curve is kept for timings and figures."""
-    cls = scheme(name)
-    given = among(cls, {"tolerance": TOLERANCE} | dict(options))
     try:
-        curve, note = solved(cls, keyframes, **given)
+        curve, note = _solved(name, keyframes, options)
     except ConvergenceError as error:  # in words for a table
         return [{"failure": str(error)}]
     curves[name] = curve  # of what failed, no seconds

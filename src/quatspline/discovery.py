@@ -19,6 +19,7 @@ from quatspline import admission
 from quatspline.curve import Curve
 from quatspline.peers import installed
 from quatspline.system.loading import load, passing, unfinished
+from quatspline.system.sentence import printable
 
 PACKAGE = Path(__file__).parent
 PROPOSED = PACKAGE / "proposed"
@@ -90,7 +91,7 @@ def _baselines() -> frozenset[str]:
 def _named(plugin: admission.Plugin) -> tuple[str, str]:
     """The name of a scheme, and where it comes from."""
     if isinstance(plugin, Path):
-        return plugin.stem.replace("_", "-"), str(plugin)
+        return printable(plugin.stem.replace("_", "-")), printable(str(plugin))
     return plugin.name, plugin.value
 
 

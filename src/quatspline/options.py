@@ -88,6 +88,8 @@ LARGEST = 1e6
 Factor = Annotated[float, Within(LARGEST)]
 Positive = Annotated[float, Above(0.0)]
 Count = Annotated[int, AtLeast(1), AtMost(EXACT)]
+Iterations = Annotated[Count, AtMost(10_000)]
+"""Of a solver: those that converge need hundreds at most, and not every solver notices that it does not."""
 Stop = Literal["residual", "change"]
 OnFailure = Literal["raise", "return"]
 
@@ -135,7 +137,7 @@ def _check(name: str, value: Any, kind: Any) -> None:
     if origin is Literal:
         if not (isinstance(value, str | numbers.Integral) and value in get_args(kind)):
             choices = ", ".join(repr(choice) for choice in get_args(kind))
-            raise ValueError(f"{name}={value!r}: expected one of {choices}")
+            raise ValueError(f"{name}={_shown(value)}: expected one of {choices}")
     elif origin is Annotated:
         base, *bounds = get_args(kind)
         _check(name, value, base)
@@ -146,10 +148,10 @@ def _check(name: str, value: Any, kind: Any) -> None:
         _check_any(name, value, get_args(kind))
     elif kind is bool:
         if not isinstance(value, bool | np.bool_):
-            raise ValueError(f"{name}={value!r}: expected True or False")
+            raise ValueError(f"{name}={_shown(value)}: expected True or False")
     elif kind is int:
         if isinstance(value, bool) or not isinstance(value, numbers.Integral):
-            raise ValueError(f"{name}={value!r}: expected an integer")
+            raise ValueError(f"{name}={_shown(value)}: expected an integer")
     elif kind is float and not (_is_number(value) and _is_finite(value)):
         raise ValueError(f"{name}={_shown(value)}: expected a finite number")
 

@@ -48,7 +48,7 @@ THREAD_MINIMUM = 20_000
 """Samples that make a further thread worth its start."""
 
 FITTED, ITERATED = 4.0, 40.0
-"""Samples that the fit of a segment counts as, at once and by an iteration."""
+"""Samples that the fit of a segment counts as, at once (unless a curve's ``fitted`` says more) and by an iteration."""
 
 
 class SegmentCurve(Curve):
@@ -59,6 +59,7 @@ class SegmentCurve(Curve):
     measures_itself: bool = False
     """Whether its fit kernel reports what the constants that it wrote miss at keyframes."""
     batched = True
+    fitted = FITTED
     _waiting: BoolArray | None = None
     """While a long curve is not wholly fitted: which chunks wait."""
     _fitting: threading.Lock
@@ -116,7 +117,8 @@ class SegmentCurve(Curve):
         shape = len(tracks), h.size * pieces, self.family.constants
         room = np.empty(math.prod(shape) + ROWS)
         segments, beyond = room[:-ROWS].reshape(shape), room[-ROWS:]
-        work = len(tracks) * h.size * pieces * (ITERATED if self.iterative else FITTED)
+        each = ITERATED if self.iterative else self.fitted
+        work = len(tracks) * h.size * pieces * each
         self.fit_kernel.work += work
         given = tracks, h, closed, self._keyframes.signs, self.parameters, segments, report, beyond
         compiled = self._refused or engine.compiles(0.0, self.fit_kernel)

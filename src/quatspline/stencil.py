@@ -56,7 +56,8 @@ def rates(
     reach = POINTS // 2
     below = np.maximum(reach - np.floor((t - lo) / step), 0.0)
     above = np.maximum(reach - np.floor((hi - t) / step), 0.0)
-    shift = np.clip(below - above, -reach, reach).astype(int)
+    off = np.nan_to_num(below - above)  # NaN where orientations are, and then so are their rates
+    shift = np.clip(off, -reach, reach).astype(int)
     nodes = np.arange(POINTS) - reach + shift[:, None]
     samples = np.clip(t[:, None] + nodes * step[:, None], lo[:, None], hi[:, None])
     q = orientation(samples.reshape(-1)).reshape(len(t), POINTS, 4)

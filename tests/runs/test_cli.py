@@ -538,11 +538,12 @@ def test_a_failing_experiment_is_told_and_the_rest_run(
 
 # -- interruption -------------------------------------------------------------------------------
 
-STOP_ONCE = f"""import os
+STOP_ONCE = f"""import os, signal
+    from quatspline.system.ending import Ended
     stop = not os.path.exists("second.count")
     {count("second")}
     if stop:
-        raise KeyboardInterrupt"""
+        raise Ended(signal.SIGINT)"""
 
 
 def interrupted(desk: Desk) -> None:

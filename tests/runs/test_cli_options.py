@@ -168,7 +168,7 @@ def test_kinds_are_told_in_words(capsys: pytest.CaptureFixture[str]) -> None:
     }
     assert told["ends=natural"].strip() == "natural | clamped"
     assert told["tolerance=1e-06"].strip() == "a number, above 0"
-    assert told["max_iterations=None"].strip() == "a whole number, at least 1 | None"
+    assert told["max_iterations=None"].strip() == "a whole number, at least 1, at most 10000 | None"
     assert told["start_velocity=None"].strip() == "a number, or several by commas"
     assert run("options", "kimm") == 2
     assert "did you mean 'kim'?" in capsys.readouterr().err

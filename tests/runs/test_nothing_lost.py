@@ -255,6 +255,15 @@ def test_a_stdout_that_takes_nothing_is_told_in_a_line(
     assert (done.returncode, done.stderr) == (1, told)
 
 
+@pytest.mark.parametrize("asked", ["--help", "--version"])
+def test_help_that_nobody_gets_is_told(asked: str) -> None:
+    if not Path("/dev/full").exists():
+        pytest.skip("no device here that is always full")
+    done = shell(">/dev/full", asked)
+    told = "quatspline: standard output: cannot be written: No space left on device\n"
+    assert (done.returncode, done.stderr) == (1, told)
+
+
 def test_a_hidden_file_in_a_folder_that_is_not_ours_outlives_a_refused_run(
     desk: Path, refused: Refused
 ) -> None:

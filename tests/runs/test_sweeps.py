@@ -5,11 +5,14 @@ from __future__ import annotations
 import json
 import os
 import re
+import socket
 import subprocess
 import sys
+import threading
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any
 
@@ -462,8 +465,65 @@ def test_a_cluster_whose_last_worker_leaves_is_told(
     assert cluster.NO_WORKER in (bench.out / "swept.error.txt").read_text(encoding="utf-8")
 
 
+def test_a_scheduler_that_vanishes_is_told_without_a_trace(bench: Bench) -> None:
+    """Cells that are left are given up, status 1; what was measured before is kept."""
+    pytest.importorskip("distributed")
+    kill = "os.kill(int((HERE / 'scheduler').read_text()), signal.SIGKILL)"
+    bench.experiment(f"if x == 3: time.sleep(1.0); {kill}")  # the others' results have arrived
+    file = bench.folder / "address.json"
+    quiet = {"stderr": subprocess.DEVNULL, "stdout": subprocess.DEVNULL}
+    with ExitStack() as stack:
+
+        def started(module: str, *arguments: object) -> subprocess.Popen[bytes]:
+            line = [sys.executable, "-m", f"distributed.cli.{module}", *map(str, arguments)]
+            process = stack.enter_context(subprocess.Popen(line, **quiet))
+            stack.callback(process.kill)
+            return process
+
+        asked = "--host", "127.0.0.1", "--port", 0, "--no-dashboard", "--scheduler-file", file
+        own = started("dask_scheduler", *asked)
+        (bench.folder / "scheduler").write_text(str(own.pid))
+        wait_until(file.exists)
+        address = json.loads(file.read_text(encoding="utf-8"))["address"]
+        started("dask_worker", address, "--nthreads", 1, "--no-nanny")
+        with bench.popen("--dask", address) as process:
+            said = process.communicate()[1]
+    assert process.returncode == 1
+    assert re.search("failed: .*the Dask (scheduler|cluster)", said)
+    assert "Traceback" not in said
+    assert bench.kept() >= 1
+
+
+@pytest.mark.parametrize("answer", [None, b"HTTP/1.1 400 Bad Request\r\n\r\n" + b" " * 100])
+def test_what_is_no_scheduler_is_told_soon(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch, answer: bytes | None
+) -> None:
+    """Something else at the port, which says nothing or something else."""
+    pytest.importorskip("distributed")
+    bench.experiment()
+    monkeypatch.setattr(cluster, "GREETING", 0.5)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+
+        def talk() -> None:
+            with suppress(OSError):
+                while True:
+                    other = server.accept()[0]
+                    held.append(other)
+                    other.sendall(answer or b"")
+
+        held: list[socket.socket] = []
+        threading.Thread(target=talk, daemon=True).start()
+        address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        with pytest.raises(ValueError, match=rf"--dask {address}: no Dask scheduler answers"):
+            bench.run(dask=address)
+        server.shutdown(socket.SHUT_RDWR)
+    for other in held:
+        other.close()
+    assert not bench.out.exists()
+
+
 def test_limits_of_a_cluster_keep_what_is_promised() -> None:
-    assert cluster.ANSWER <= 5.0
+    assert cluster.GREETING + 1.0 < 5.0
     assert cluster.ALONE + 2.0 * cluster.LOOK + cluster.ANSWER <= 30.0
 
 
@@ -471,7 +531,7 @@ def test_without_a_scheduler_or_the_extra_nothing_starts(
     bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     bench.experiment()
-    monkeypatch.setattr(cluster, "ANSWER", 0.2)
+    monkeypatch.setattr(cluster, "GREETING", 0.2)
     with pytest.raises(ValueError, match=r"--dask tcp://127.0.0.1:9: no Dask scheduler answers"):
         bench.run(dask="tcp://127.0.0.1:9")
     monkeypatch.setattr(cluster.importlib.util, "find_spec", lambda name: None)

@@ -36,6 +36,12 @@ def test_absurd_options_are_refused(name: str, options: dict[str, Any], sentence
         qs.build(name, None, walk(5, 40.0), **options)
 
 
+def test_subintervals_that_no_memory_holds_are_refused() -> None:
+    still = np.tile([1.0, 0.0, 0.0, 0.0], (1200, 1))
+    with pytest.raises(ValueError, match=r"^subintervals=1000: 1,199,000 of them are too many"):
+        qs.build("min-torque", None, still, subintervals=1000)
+
+
 def test_points_that_no_memory_holds_are_refused() -> None:
     still = np.tile([1.0, 0.0, 0.0, 0.0], (30_000, 1))
     with pytest.raises(ValueError, match=r"^steps=4096: 122,875,904 points are too many"):
@@ -48,6 +54,8 @@ def test_numbers_that_float64_does_not_hold_are_refused() -> None:
             qs.build("quintic", None, walk(5, 40.0), **options)
     with pytest.raises(ValueError, match=r"^max_iterations=18446744073709551616: must be at most"):
         qs.build("nielson", None, walk(5, 40.0), max_iterations=2**64)
+    with pytest.raises(ValueError, match=r"^max_iterations=10001: must be at most 10000"):
+        qs.build("kim", None, walk(5, 40.0), max_iterations=10_001)
 
 
 def test_an_end_velocity_that_no_segment_carries_is_refused() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import ast
 import math
+import sys
 from collections.abc import Callable
 from contextlib import suppress
 from fractions import Fraction
@@ -13,8 +14,10 @@ from typing import Any, Literal, NoReturn
 
 from quatspline import __version__
 from quatspline.cli import completion
+from quatspline.system.atomic import naming
 from quatspline.system.sentence import MOST as SENTENCE
 from quatspline.system.sentence import one_line
+from quatspline.system.stdout import STDOUT
 
 REFUSED = 2
 """The status of bad usage and bad input."""
@@ -34,6 +37,14 @@ class _Parser(argparse.ArgumentParser):
         begin, end = f"{self.prog}: ", f" (see {self.prog} --help)"
         room = SENTENCE - len(begin) - len(end)
         self.exit(REFUSED, f"{begin}{one_line(message, room)}{end}\n")
+
+    def _print_message(self, message: str, file: Any = None) -> None:
+        """As argparse does, which is silent where standard output takes nothing."""
+        if not message or file is not sys.stdout:
+            super()._print_message(message, file)
+            return
+        with naming(STDOUT):
+            print(message, end="", file=file, flush=True)
 
 
 def parser() -> argparse.ArgumentParser:

@@ -22,6 +22,7 @@ from quatspline.cli.completion import offered
 from quatspline.cli.notes import note
 from quatspline.system.atomic import naming
 from quatspline.system.ending import Ended, ending
+from quatspline.system.sentence import one_line, printable
 from quatspline.system.stdout import STDOUT, reserved, say
 
 if TYPE_CHECKING:
@@ -58,10 +59,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         commands = parser()
         offered(commands)
         arguments = commands.parse_args(given)
-        arguments.command = ["quatspline", *given]
+        arguments.command = ["quatspline", *map(printable, given)]  # as files and pages can hold it
         with ending(partial(_interrupted, arguments.name)):
             with reserved():
-                status = COMMANDS[arguments.name](arguments)
+                status = _served(arguments)
             with naming(STDOUT):
                 sys.stdout.flush()
         return status
@@ -77,6 +78,18 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _told(str(error), REFUSED)
     except Exception as error:
         return _unforeseen(error)
+
+
+def _served(arguments: argparse.Namespace) -> int:
+    """Serve a command; a scheme that would leave the program is an error like others, and no signal."""
+    try:
+        return COMMANDS[arguments.name](arguments)
+    except (Exception, Ended):
+        raise
+    except BaseException as error:
+        from quatspline.instruments.trials import reason
+
+        return _told(f"{reason(error)}: raised by a scheme or a library", FAILED)
 
 
 def _interrupted(command: str, status: int) -> int:
@@ -121,7 +134,7 @@ def _list(arguments: argparse.Namespace) -> int:
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     say("  ".join(map(str.ljust, row, widths)).rstrip() for row in rows)
     unusable = [item for item in items if item.scheme is None]
-    say(f"{i.name.ljust(widths[0])}  n/a: {' '.join(str(i.problem).split())}" for i in unusable)
+    say(f"{i.name.ljust(widths[0])}  n/a: {one_line(str(i.problem))}" for i in unusable)
     return DONE
 
 
@@ -190,7 +203,7 @@ def _compare(arguments: argparse.Namespace) -> int:
     with results.writing():
         results.guard((compare if body else joints).FILES, inputs=[arguments.keyframes])
         common = {"schemes": schemes, "results": results, "call": arguments.command}
-        common |= {"name": Path(arguments.keyframes).name, "options": given}
+        common |= {"name": printable(Path(arguments.keyframes).name), "options": given}
         if not body:
             return joints.command(motion, every=arguments.keep, **common)
         common |= {"needs": needs, "told": asked.told(arguments, motion)}

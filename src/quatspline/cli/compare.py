@@ -13,6 +13,7 @@ import numpy as np
 from quatspline import comparing
 from quatspline.engines.engine import always_compiled
 from quatspline.inputs.stamps import elapsed
+from quatspline.system.sentence import printable
 from quatspline.system.stdout import say
 
 if TYPE_CHECKING:
@@ -96,7 +97,7 @@ def command(
     places = None if motion.positions is None else motion.positions[:, 0]
     scene = own_scene("own", "Your keyframes", keyframes, places, names)
     page = write_page(results, title=comparing.TITLE, scenes=[scene], sections=OWN, findings=found)
-    print(page, file=sys.stderr)
+    print(printable(str(page)), file=sys.stderr)
     return 0
 
 

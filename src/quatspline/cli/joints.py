@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from quatspline.cli.ranking import ROWS, more
 from quatspline.engines.engine import always_compiled
+from quatspline.system.sentence import printable
 from quatspline.system.stdout import say
 
 if TYPE_CHECKING:
@@ -96,7 +97,7 @@ def command(
         sections=KEPT,
         findings=[],
     )
-    print(page, file=sys.stderr)
+    print(printable(str(page)), file=sys.stderr)
     return 0
 
 
@@ -110,25 +111,37 @@ def _measured(
     """A row per scheme, with what was measured of each joint."""
     from quatspline import catalogue
     from quatspline.instruments.trials import attempted
-    from quatspline.options import among
+    from quatspline.runs import rehearsal
     from quatspline.runs.experiment import Run
-    from quatspline.timing.own_keyframes import left_out
 
-    work = int((~out).sum()) * len(motion.tracks)
+    names = list(schemes or catalogue.schemes())
+    given = (
+        motion,
+        every,
+        None if schemes else int((~out).sum()) * len(motion.tracks),
+        dict(options),
+    )
+    failed = rehearsal.failures(_row, names, *given)
     rows = []
-    for scheme in Run(quick=True).progress(list(schemes or catalogue.schemes()), label="compare"):
-        reason = left_out(scheme, work) if schemes is None else None
-        given = among(catalogue.scheme(scheme), options)
-        measure = partial(_row, motion, scheme, every, given)
-        row = attempted(measure)[0] if reason is None else {"failure": reason}
+    for scheme in Run(quick=True).progress(names, label="compare"):
+        measure = partial(_row, scheme, *given)
+        row = {"failure": failed[scheme]} if scheme in failed else attempted(measure)[0]
         rows.append({"scheme": scheme} | row)
     return rows
 
 
-def _row(motion: Motion, scheme: str, every: int, given: Mapping[str, Any]) -> list[Row]:
+def _row(
+    scheme: str, motion: Motion, every: int, work: int | None, options: Mapping[str, Any]
+) -> list[Row]:
+    """The row of one scheme; ``work``: keyframes in all, None where it was asked for by name."""
+    from quatspline import catalogue
     from quatspline.motion import keeping
+    from quatspline.options import among
+    from quatspline.timing.own_keyframes import left_out
 
-    return [keeping.row(motion, scheme, every, given)]
+    if work is not None and (reason := left_out(scheme, work)):
+        return [{"failure": reason}]
+    return [keeping.row(motion, scheme, every, among(catalogue.scheme(scheme), options))]
 
 
 def _tables(

@@ -12,7 +12,7 @@ from quatspline.system.sentence import one_line
 
 def note(line: str) -> None:
     """Say one line."""
-    print(f"quatspline: {one_line(line)}", file=sys.stderr)
+    print(one_line(f"quatspline: {line}"), file=sys.stderr)
 
 
 @contextmanager

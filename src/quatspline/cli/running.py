@@ -25,6 +25,7 @@ from quatspline.runs.experiment import (
 )
 from quatspline.runs.journal import Journal, Kept, forget
 from quatspline.runs.results import JOURNAL, PAGE, Results, now
+from quatspline.system.sentence import printable
 from quatspline.system.stdout import say
 
 if TYPE_CHECKING:
@@ -215,4 +216,4 @@ def _draw(module: ModuleType, table: pd.DataFrame, name: str, results: Results) 
 
 
 def _say(line: str) -> None:
-    print(line, file=sys.stderr, flush=True)
+    print(printable(line), file=sys.stderr, flush=True)

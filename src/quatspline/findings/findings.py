@@ -73,7 +73,8 @@ def reader(folder: Path) -> Reader:
 
 def _orders(cell: Ledger) -> tuple[Part, ...]:
     names = ("slerp", "quartic", "quintic", "kim", "nielson", "local-quintic")
-    coarse, fine = cell.values("accuracy", "keyframes", scheme="quartic", knots="uniform")[-2:]
+    sizes = cell.values("accuracy", "keyframes", scheme="quartic", knots="uniform")
+    coarse, fine = sizes[-2], sizes[-1]
     where = {"knots": "uniform", "keyframes": fine}
     slopes = [cell("accuracy", "slope", scheme=name, **where) for name in names]
     return said(

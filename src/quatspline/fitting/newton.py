@@ -47,6 +47,9 @@ LEAST_GROWTH = 1.0 / 256.0
 LOOSE = 1e-5
 """Tolerance of the homotopy's inner stages."""
 
+STALLED = 4 * np.finfo(float).eps
+"""A relative change of controls this small moves nothing any more."""
+
 ROUNDING = 1e-13
 """Misses below this are rounding: there the line search has nothing left to compare."""
 

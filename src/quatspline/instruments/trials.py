@@ -9,6 +9,7 @@ from quatspline.catalogue import scheme, version
 from quatspline.curve import Curve
 from quatspline.instruments.derivatives import analytic
 from quatspline.quaternion import FloatArray
+from quatspline.system.sentence import printable
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -62,4 +63,4 @@ def attempted(measure: Callable[[], list[Row]], **given: Any) -> list[Row]:
 
 def reason(error: BaseException) -> str:
     """What a scheme raised, on one line."""
-    return f"{type(error).__name__}: {' '.join(str(error).split())}"
+    return f"{type(error).__name__}: {printable(' '.join(str(error).split()))}"

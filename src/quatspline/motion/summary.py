@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from quatspline import quaternion
@@ -18,7 +20,7 @@ STAMPS = {1: "s", 10**3: "ms", 10**6: "us", 10**9: "ns"}
 """Units of stamps by their number in a second."""
 
 NAMED = 8
-"""Names of tracks that are listed."""
+"""Names of tracks, or of what is not read, that are listed."""
 
 
 def summary(motion: Motion) -> list[str]:
@@ -36,7 +38,7 @@ def summary(motion: Motion) -> list[str]:
     if len(motion.quaternions) > 3 and not motion.closed:
         rows["noise"] = _noise(motion)
     if motion.unread:
-        rows["not read"] = ", ".join(motion.unread)
+        rows["not read"] = _first(motion.unread)
     if motion.interpolation:
         rows["interpolation"] = motion.interpolation
     width = max(map(len, rows))
@@ -44,10 +46,13 @@ def summary(motion: Motion) -> list[str]:
 
 
 def _tracks(motion: Motion) -> str:
-    names = list(motion.tracks)
-    more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
     hung = ", a skeleton" if motion.skeleton is not None else ""
-    return f"{len(names)}{hung}: {', '.join(names[:NAMED])}{more}"
+    return f"{len(motion.tracks)}{hung}: {_first(motion.tracks)}"
+
+
+def _first(names: Sequence[str]) -> str:
+    more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
+    return f"{', '.join(names[:NAMED])}{more}"
 
 
 def _positions(motion: Motion) -> str:

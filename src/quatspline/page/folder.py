@@ -15,6 +15,7 @@ from quatspline.findings.findings import reader
 from quatspline.motion.replay import PARTS
 from quatspline.runs.manifest import MANIFEST, json_object
 from quatspline.runs.results import REPLAYS
+from quatspline.system.atomic import check_plain
 
 OWN_WORDS = {"table1": "Table 1", "edge-cases": "Edge cases"}
 """Names of tables that are not their name capitalised."""
@@ -164,8 +165,9 @@ def _expect(where: str, value: Any, kind: type[Any], keys: tuple[str, ...]) -> N
 def _motions(path: Path) -> list[dict[str, Any]]:
     """Motions that `quatspline.motion.replay` made, refused if they are not."""
     try:
+        check_plain(path)
         content = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise ValueError(f"{path}: not a file in JSON: {error}") from error
     _expect(str(path), content, list, ())
     for number, motion in enumerate(content):

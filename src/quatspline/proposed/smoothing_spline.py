@@ -14,7 +14,7 @@ from quatspline.fitting.smoothing_search import Criterion, Search, gcv, reached,
 from quatspline.fitting.weights import positive
 from quatspline.kernels.jit import REACH
 from quatspline.keyframes import Keyframes
-from quatspline.options import AtLeast, Count, OnFailure, Positive
+from quatspline.options import AtLeast, Iterations, OnFailure, Positive
 from quatspline.segments import SegmentCurve
 
 Choice = Annotated[float, AtLeast(0.0)] | Literal["gcv", "auto"]
@@ -75,7 +75,7 @@ class SmoothingSpline(SegmentCurve):
         noise: Positive | None = None,
         weights: Any = None,
         tolerance: Positive = 1e-10,
-        max_iterations: Count = 100,
+        max_iterations: Iterations = 100,
         on_failure: OnFailure = "raise",
     ) -> None:
         if noise is not None and smoothing != "auto":

@@ -6,21 +6,26 @@ to join.  So who waits here looks at the workers from time to time.
 
 from __future__ import annotations
 
+import asyncio
 import importlib.util
+import logging
 import time
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from queue import Empty, SimpleQueue
 from typing import Any
 
+GREETING = 3.0
+"""Seconds to wait for a Dask scheduler at an address: with what a command takes to start, fewer than five."""
 ANSWER = 4.0
-"""Seconds to wait for a Dask scheduler."""
+"""Seconds to wait for it later."""
 JOINING = 10.0
 """Seconds to wait for its first worker."""
 LOOK = 2.0
 """Seconds between two looks at its workers."""
 ALONE = 20.0
-"""Seconds without any worker after which cells are given up: a nanny restarts one in fewer."""
+"""Seconds without any worker, or an answer, after which cells are given up: a nanny restarts one in fewer."""
 
 NO_WORKER = "the Dask cluster has no workers any more"
 GONE = "the Dask scheduler does not answer any more"
@@ -37,20 +42,47 @@ def connected(address: str) -> Any:
     if importlib.util.find_spec("distributed") is None:
         raise ValueError("--dask needs the extra: pip install 'quatspline[dask]'")
     import distributed
-    from distributed.comm import resolve_address
 
+    logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # what matters is told here
     try:
-        resolve_address(address)  # a client that fails at this cannot be closed
+        with ThreadPoolExecutor(1) as own:  # whose thread has no loop of events that runs
+            own.submit(asyncio.run, _answer(address)).result()
         client = distributed.Client(address, timeout=ANSWER, set_as_default=False)
-    except (OSError, ValueError) as error:
-        reason = " ".join(str(error).split())
-        raise ValueError(f"--dask {address}: no Dask scheduler answers: {reason}") from None
+    except TimeoutError:
+        raise _nobody(address, f"nothing came within {GREETING:g} s") from None
+    except Exception as error:  # whatever a stranger's port says, and what distributed makes of it
+        raise _nobody(address, " ".join(str(error).split()) or type(error).__name__) from None
     try:
         client.wait_for_workers(1, timeout=JOINING)
     except TimeoutError:
         client.close()
         raise ValueError(f"--dask {address}: the scheduler has no workers") from None
     return client
+
+
+async def _answer(address: str) -> None:
+    """Have what is at an address say that it is a scheduler.
+
+    A client waits without end for what accepts a connection and stays silent, and one that fails leaves
+    its attempts behind.
+    """
+    from distributed.comm import resolve_address
+    from distributed.core import connect
+    from distributed.security import Security
+
+    security = Security().get_connection_args("client")
+    async with asyncio.timeout(GREETING):
+        comm = await connect(resolve_address(address), timeout=GREETING, **security)
+        try:
+            await comm.write({"op": "identity", "reply": True})
+            if (await comm.read()).get("type") != "Scheduler":
+                raise ValueError("what answers is no scheduler")
+        finally:
+            comm.abort()
+
+
+def _nobody(address: str, reason: str) -> ValueError:
+    return ValueError(f"--dask {address}: no Dask scheduler answers: {reason}")
 
 
 def outcomes(
@@ -84,12 +116,14 @@ def outcomes(
 
 def _ended(future: Any) -> tuple[Any, str | None] | None:
     """A result, or the trouble; None where the worker that had the result left, and it is measured again."""
-    from distributed import KilledWorker
+    from distributed import CancelledError, KilledWorker
 
     try:
         return future.result(timeout=ANSWER), None
     except TimeoutError:
         return None
+    except CancelledError:  # nobody here has
+        return None, GONE
     except KilledWorker:
         return None, "the Dask workers that were to measure it died"
     except Exception as error:
@@ -103,12 +137,12 @@ class _Watch:
         self.client, self.seen = client, time.monotonic()
 
     def trouble(self) -> str | None:
-        """Why it cannot, for longer than a worker takes to be restarted."""
+        """Why it cannot, for longer than a worker takes to be restarted, or a scheduler to be out of breath."""
+        why = NO_WORKER
         try:
             known = self.client.sync(self.client.scheduler.identity, callback_timeout=ANSWER)
-            there = bool(known["workers"])
+            if known["workers"]:
+                self.seen = time.monotonic()
         except Exception:
-            return GONE
-        if there:
-            self.seen = time.monotonic()
-        return NO_WORKER if time.monotonic() - self.seen > ALONE else None
+            why = GONE
+        return why if time.monotonic() - self.seen > ALONE else None

@@ -9,7 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from quatspline.system.atomic import ASIDE, replacing
+from quatspline.system.atomic import ASIDE, check_plain, replacing
 
 MANIFEST = "manifest.json"
 SCHEMA = "quatspline results 1"
@@ -64,8 +64,9 @@ def read_json(path: Path) -> dict[str, Any]:
 def json_object(path: Path) -> dict[str, Any]:
     """The object in a JSON file; a ValueError with the path for anything else."""
     try:
+        check_plain(path)
         content = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise ValueError(f"{path}: not a file in JSON: {error}") from error
     if not isinstance(content, dict):
         raise ValueError(f"{path}: a JSON object is expected, found {type(content).__name__}")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from quatspline.runs.manifest import MANIFEST, sha256
 from quatspline.runs.provenance import now
 from quatspline.runs.store import JOURNAL, Store
+from quatspline.system.atomic import check_plain
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -67,9 +68,13 @@ class Results(Store):
 
         path = self.folder / f"{name}.csv"
         try:
+            check_plain(path)
             return pd.read_csv(path, keep_default_na=False, na_values=[""])
-        except ValueError as error:  # pandas tells what is wrong, but not where
-            raise ValueError(f"{path}: not a table in CSV: {error}") from error
+        except FileNotFoundError:
+            raise
+        except (ValueError, OSError) as error:  # pandas tells what is wrong, but not where
+            why = error.strerror if isinstance(error, OSError) else error
+            raise ValueError(f"{path}: not a table in CSV: {why}") from error
 
     def figure(self, name: str, figure: Figure) -> None:
         """Write ``<name>.png`` and ``<name>.svg``, the same bytes every time."""

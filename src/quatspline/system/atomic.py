@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import secrets
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -72,6 +73,20 @@ def clear_asides(folder: Path) -> None:
     for aside in folder.glob(f".*{ASIDE}"):
         if OURS.fullmatch(aside.name) and aside.is_file() and not aside.is_symlink():
             aside.unlink(missing_ok=True)
+
+
+def check_plain(path: Path) -> None:
+    """Refuse what is there and no plain file: reading a pipe or a device may never end.
+
+    Raises
+    ------
+    ValueError
+        For what is none.
+    OSError
+        Where nothing is there, or may be looked at.
+    """
+    if not stat.S_ISREG(path.stat().st_mode):
+        raise ValueError("no plain file")
 
 
 def same_file(one: str | Path, other: str | Path) -> bool:

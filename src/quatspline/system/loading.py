@@ -10,6 +10,7 @@ and wait for the other.
 from __future__ import annotations
 
 import hashlib
+import os
 import re
 import sys
 import traceback
@@ -46,7 +47,7 @@ sys.meta_path.append(_files)
 
 def load(path: Path, prefix: str) -> ModuleType:
     """Import a file by path, once; see `unfinished` for what is being imported further up."""
-    place = hashlib.sha256(str(path.resolve()).encode()).hexdigest()[:8]
+    place = hashlib.sha256(os.fsencode(os.path.realpath(path))).hexdigest()[:8]
     name = re.sub(r"\W", "_", f"quatspline_{prefix}_{path.stem}_{place}")
     _files.paths[name] = path
     with undivided():

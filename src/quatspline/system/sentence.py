@@ -16,11 +16,22 @@ def one_line(text: str, most: int = MOST) -> str:
     >>> one_line("0" * 1000, most=9)
     '0000...00'
     """
-    line = "".join(c if c.isprintable() else _escaped(c) for c in " ".join(text.split()))
+    line = printable(" ".join(text.split()))
     if len(line) <= most:
         return line
     kept = most - len("...")
     return f"{line[: kept - kept // 3]}...{line[-(kept // 3) :]}"
+
+
+def printable(text: str) -> str:
+    r"""A text with what no terminal should obey, and no file can hold, escaped.
+
+    Examples
+    --------
+    >>> printable("a\nb\udcff")
+    'a\\nb\\udcff'
+    """
+    return "".join(c if c.isprintable() else _escaped(c) for c in text)
 
 
 def _escaped(character: str) -> str:

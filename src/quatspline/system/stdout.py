@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from typing import TextIO
 
 from quatspline.system.atomic import naming
+from quatspline.system.sentence import printable
 
 STDOUT = "standard output"
 
@@ -31,8 +32,8 @@ def output() -> TextIO:
 
 
 def say(lines: Iterable[str]) -> None:
-    """Print lines at once: what fails later does not take them along."""
+    """Print lines at once: what fails later does not take them along; no terminal obeys what they quote."""
     with naming(STDOUT):
         for line in lines:
-            print(line, file=output())
+            print(printable(line), file=output())
         print(end="", flush=True, file=output())

@@ -35,6 +35,9 @@ KITTI_COLUMNS = ("r00", "r01", "r02", "tx", "r10", "r11", "r12", "ty", "r20", "r
 EUROC = (("q", "rs"), 10**9)
 """By which EuRoC's files are known, whose stamps are nanoseconds without saying so."""
 
+MOST = 10_000
+"""Columns of a file: what one more may mean is asked of every name."""
+
 TRACKS = frozenset({"joint", "track"})
 """What the column is called that says of which track a row is."""
 
@@ -105,6 +108,8 @@ def layout(names: Sequence[str]) -> Layout:
     ValueError
         Where they lack something, or name something twice.
     """
+    if len(names) > MOST:
+        raise ValueError(f"{len(names):,} columns: {MOST:,} at most are read")
     groups = _groups(names)
     time = _time(names)
     form, orientation, quaternion = _orientation(names, groups)

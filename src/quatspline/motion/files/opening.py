@@ -36,10 +36,12 @@ def check_regular(path: Path) -> None:
 
 
 def text_lines(path: Path, stream: TextIO) -> Iterator[str]:
-    """The lines of a stream with their ends; one that is too long is refused."""
+    """The lines of a stream with their ends; one that is too long, or has NUL characters, is refused."""
     for number, line in enumerate(iter(lambda: stream.readline(LONGEST + 1), ""), 1):
         if len(line) > LONGEST:
             raise MotionFileError(f"{path}, line {number}: longer than {LONGEST:,} characters")
+        if "\0" in line:
+            raise MotionFileError(f"{path}, line {number}: a NUL character, which no text has")
         yield line
 
 
