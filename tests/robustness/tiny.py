@@ -65,7 +65,7 @@ EXPERIMENTS = {"side": SIDE, "timed": TIMED}
 class Tiny:
     """The folder; ``limits``: seconds of a trial and of a cell."""
 
-    def __init__(self, folder: Path, *bad: str, limits: float = 20.0) -> None:
+    def __init__(self, folder: Path, *bad: str, limits: float = 120.0) -> None:
         self.folder, self.out = folder, folder / "results"
         for name in ("schemes", "experiments"):
             (folder / name).mkdir(parents=True)

@@ -350,7 +350,7 @@ def _damage(path: Path, rng: random.Random) -> str:
     elif how == 5:
         content += rng.randbytes(100)
     elif how == 6:
-        content += content
+        content += bytes(content)
     else:
         content[at:at] = b"\n"
     path.write_bytes(content)
