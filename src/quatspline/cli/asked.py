@@ -10,6 +10,10 @@ if TYPE_CHECKING:
     from quatspline.motion import Motion
 
 
+OF_JOINTS = "excursion"
+"""The column of a need that is measured of several tracks, too."""
+
+
 def needs(arguments: argparse.Namespace, motion: Motion) -> Needs:
     """The needs; ``--time-unit`` overrules what the file says of its times."""
     from quatspline.findings.needs import Needs
@@ -23,6 +27,7 @@ def needs(arguments: argparse.Namespace, motion: Motion) -> Needs:
         max_accel=arguments.max_accel,
         max_excursion=arguments.max_excursion,
         second=float(motion.per_second) if unit is None else 1.0 / unit,
+        table="compare" if len(motion.tracks) == 1 else "kept",
     )
 
 
@@ -39,7 +44,9 @@ def check_tracks(arguments: argparse.Namespace, motion: Motion, needs: Needs) ->
         raise ValueError(
             f"{file}: {count} tracks need --keep K: they are compared at the frames that it leaves out"
         )
-    if count > 1 and needs.limits:
+    alone = [limit.flag for limit in needs.limits if limit.column != OF_JOINTS]
+    if count > 1 and alone:
         raise ValueError(
-            f"{file}: {needs.limits[0].flag} applies to a single track, and there are {count}"
+            f"{file}: {alone[0]} applies to a single track, and there are {count}: leave it out, or compare the "
+            "keyframes of one joint in a file of their own"
         )

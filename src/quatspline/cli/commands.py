@@ -204,9 +204,10 @@ def _compare(arguments: argparse.Namespace) -> int:
         results.guard((compare if body else joints).FILES, inputs=[arguments.keyframes])
         common = {"schemes": schemes, "results": results, "call": arguments.command}
         common |= {"name": printable(Path(arguments.keyframes).name), "options": given}
+        common |= {"needs": needs}
         if not body:
             return joints.command(motion, every=arguments.keep, **common)
-        common |= {"needs": needs, "told": asked.told(arguments, motion)}
+        common |= {"told": asked.told(arguments, motion)}
         return compare.command(motion, closed=arguments.closed, every=arguments.keep, **common)
 
 

@@ -8,7 +8,6 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from quatspline.cli.ranking import ROWS, more
 from quatspline.engines.engine import always_compiled
 from quatspline.system.sentence import printable
 from quatspline.system.stdout import say
@@ -16,6 +15,7 @@ from quatspline.system.stdout import say
 if TYPE_CHECKING:
     import pandas as pd
 
+    from quatspline.findings.needs import Needs
     from quatspline.inputs.arrays import BoolArray
     from quatspline.instruments.trials import Row
     from quatspline.motion import Motion
@@ -36,13 +36,15 @@ TITLE = "Every {every}-th frame kept, measured at the {count} left out"
 NOTE = (
     "Angles in rad between the motion and its rebuilding, over the joints that turn by more than a degree: the "
     "median of their root mean squares, the worst and the largest with their joints; end_rms is that of the end "
-    "effectors in the motion's unit of length, on the root's true path; seconds are of one set-up. Sorted by "
-    "rms_median."
+    "effectors in the motion's unit of length, on the root's true path; seconds are of one set-up; excursion is the "
+    "largest angle off the arcs between neighbouring keyframes (degrees), empty for a library that would take too "
+    "long. Sorted by rms_median."
 )
 JOINTS_TITLE = "Joint by joint"
 JOINTS_NOTE = (
     "Root mean square and largest angle (rad) between a joint of the motion and of its rebuilding, at the frames left "
-    "out; joints on which a scheme fails have no row."
+    "out, and the largest off the arcs between its neighbouring keyframes (excursion, degrees); joints on which a "
+    "scheme fails have no row."
 )
 SPANS = (
     "Angles at the frames left out: dots are the median over the joints of their root mean squares, bars reach to the "
@@ -54,10 +56,11 @@ BY_JOINT = (
 )
 DRAWN = 4
 """Schemes that are told apart joint by joint."""
-FORMATS = {"rms_median": ".3e", "rms_worst": ".3e", "largest": ".3e", "seconds": ".2e"}
+FORMATS = {"rms_median": ".3e", "rms_worst": ".3e", "largest": ".3e"}
+FORMATS |= {"excursion": ".3g", "seconds": ".2e"}
 COLUMNS = [
     *("scheme", "joints", "rms_median", "rms_worst", "worst_joint", "largest", "largest_joint"),
-    *("end_rms", "seconds", "failed_joints", "failure"),
+    *("excursion", "end_rms", "seconds", "failed_joints", "failure"),
 ]
 
 
@@ -67,11 +70,13 @@ def command(
     schemes: Sequence[str] | None,
     every: int,
     results: Results,
+    needs: Needs,
     options: Mapping[str, Any],
     call: Sequence[str],
     name: str,
 ) -> int:
     """Serve ``quatspline compare --keep`` on a motion of several tracks: tables, figures and a page in a folder."""
+    from quatspline.cli import joint_ranking
     from quatspline.cli.played import played
     from quatspline.motion import keeping
     from quatspline.page import write_page
@@ -84,18 +89,20 @@ def command(
     with always_compiled():
         rows = _measured(motion, schemes, every, out, options)
         table, joints = _tables(results, rows, title, options)
-        results.replays(NAME, played(motion, table, "rms_median", every, name))
-    _drawn(results, table, joints)
+        wanted = joint_ranking.meeting(table, needs)
+        results.replays(NAME, played(motion, wanted, "rms_median", every, name))
+    found = joint_ranking.answer(table, needs)
+    say(joint_ranking.spoken(found, table, needs))  # before a disk runs full
+    _drawn(results, table, joints, wanted)
     entry = {"title": title, "size": f"{len(out)} frames", "seed": None}
     results.record(NAME, entry | {"seconds": round(time.perf_counter() - began, 3)})
     results.finish()
-    say(_lines(table))
     page = write_page(
         results,
         title=f"{name}: {title[0].lower()}{title[1:]}",
         scenes=[],
         sections=KEPT,
-        findings=[],
+        findings=found,
     )
     print(printable(str(page)), file=sys.stderr)
     return 0
@@ -115,12 +122,8 @@ def _measured(
     from quatspline.runs.experiment import Run
 
     names = list(schemes or catalogue.schemes())
-    given = (
-        motion,
-        every,
-        None if schemes else int((~out).sum()) * len(motion.tracks),
-        dict(options),
-    )
+    count = int((~out).sum()) * len(motion.tracks)
+    given = (motion, every, count, schemes is not None, dict(options))
     failed = rehearsal.failures(_row, names, *given)
     rows = []
     for scheme in Run(quick=True).progress(names, label="compare"):
@@ -131,17 +134,20 @@ def _measured(
 
 
 def _row(
-    scheme: str, motion: Motion, every: int, work: int | None, options: Mapping[str, Any]
+    scheme: str, motion: Motion, every: int, count: int, asked: bool, options: Mapping[str, Any]
 ) -> list[Row]:
-    """The row of one scheme; ``work``: keyframes in all, None where it was asked for by name."""
+    """The row of one scheme; ``count``: keyframes in all, ``asked``: whether it was for this one by name."""
     from quatspline import catalogue
-    from quatspline.motion import keeping
+    from quatspline.instruments import kept
+    from quatspline.instruments.excursion import SAMPLES
     from quatspline.options import among
-    from quatspline.timing.own_keyframes import left_out
+    from quatspline.timing.own_keyframes import left_out, too_dear
 
-    if work is not None and (reason := left_out(scheme, work)):
+    if not asked and (reason := left_out(scheme, count)):
         return [{"failure": reason}]
-    return [keeping.row(motion, scheme, every, among(catalogue.scheme(scheme), options))]
+    arcs = not (asked and too_dear(scheme, count, SAMPLES + 1))
+    given = among(catalogue.scheme(scheme), options)
+    return [kept.row(motion, scheme, every, given, arcs=arcs)]
 
 
 def _tables(
@@ -158,15 +164,17 @@ def _tables(
         NAME, table, title=title, note=NOTE + told(options), formats=FORMATS, keys=[]
     )
     of = [{"scheme": row["scheme"]} | joint for row in rows for joint in row.get("by_joint", [])]
-    joints = pd.DataFrame(of, columns=["scheme", "joint", "rms", "largest"])
-    formats = {"rms": ".3e", "largest": ".3e"}
+    joints = pd.DataFrame(of, columns=["scheme", "joint", "rms", "largest", "excursion"])
+    formats = {"rms": ".3e", "largest": ".3e", "excursion": ".3g"}
     return table, results.table(
         JOINTS, joints, title=JOINTS_TITLE, note=JOINTS_NOTE, formats=formats, keys=[]
     )
 
 
-def _drawn(results: Results, table: pd.DataFrame, joints: pd.DataFrame) -> None:
-    """Draw both figures; none where nothing was measured."""
+def _drawn(
+    results: Results, table: pd.DataFrame, joints: pd.DataFrame, wanted: pd.DataFrame
+) -> None:
+    """Draw both figures, told apart the schemes that are wanted; none where nothing was measured."""
     import matplotlib as mpl
 
     from quatspline.cli.played import chosen
@@ -176,31 +184,8 @@ def _drawn(results: Results, table: pd.DataFrame, joints: pd.DataFrame) -> None:
         return
     mpl.use("Agg")  # nothing here may open a window
     with style.applied():
-        names = chosen(table, "rms_median")[:DRAWN]
+        names = chosen(wanted, "rms_median")[:DRAWN]
         results.figure(NAME, kept.spans(table, names))
         results.figure(JOINTS, kept.by_joint(joints, names))
     results.text(f"{NAME}.caption.txt", SPANS)
     results.text(f"{JOINTS}.caption.txt", BY_JOINT)
-
-
-def _lines(table: pd.DataFrame) -> list[str]:
-    """The best schemes, a line each, and one line about the others."""
-    import numpy as np
-
-    from quatspline.catalogue import called
-
-    best = table[table["failure"].isna()].head(ROWS)
-    names = [called(name) for name in best["scheme"]]
-    width = max(map(len, [*names, "scheme"]))
-    lines = [f"{'scheme':{width}}  median    worst     largest (degrees at frames left out)"]
-    for name, row in zip(names, best.to_dict("records"), strict=True):
-        angles = [np.degrees(row[column]) for column in ("rms_median", "rms_worst", "largest")]
-        shown = "  ".join(f"{angle:<8.4g}" for angle in angles)
-        lines.append(f"{name:{width}}  {shown} {row['worst_joint']}, {row['largest_joint']}")
-    return [*(lines if len(best) else []), *_others(table[~table["scheme"].isin(best["scheme"])])]
-
-
-def _others(left: pd.DataFrame) -> list[str]:
-    """Why the other schemes are not among the best, in one line."""
-    failed = left["failure"].notna()
-    return list(more(["not measured" if missing else "ranked lower" for missing in failed]))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -29,6 +29,7 @@ class Limit:
     quantity : of what the column holds, by default that times ``scale``; the less, the better
     words : what is said of what the column holds, or the unit of the quantity
     scale : of the limit's unit in the column's
+    table : where the column stands
     """
 
     flag: str
@@ -37,6 +38,7 @@ class Limit:
     words: str | Callable[[Any], str]
     quantity: Callable[[Any], float] | None = None
     scale: float = 1.0
+    table: str = "compare"
 
     def has(self, row: Row) -> float:
         """The quantity of a scheme."""
@@ -54,7 +56,7 @@ class Limit:
 
     def said(self, row: Row) -> list[Part]:
         """What a scheme has, in words; a number that stands in the table is tied to its cell."""
-        cell = Cell("compare", {"scheme": row["scheme"]}, self.column, row[self.column])
+        cell = Cell(self.table, {"scheme": row["scheme"]}, self.column, row[self.column])
         if not isinstance(self.words, str):
             return [self.words(cell.value)]
         if np.isinf(self.has(row)):
@@ -75,6 +77,7 @@ class Needs:
     max_rate, max_accel : degrees per second and per second squared
     max_excursion : degrees off the arcs between keyframes
     second : units of the keyframes' times in a second
+    table : that the quantities stand in
     """
 
     smooth: int | None = None
@@ -84,11 +87,12 @@ class Needs:
     max_accel: float | None = None
     max_excursion: float | None = None
     second: float = 1.0
+    table: str = "compare"
 
     @property
     def limits(self) -> list[Limit]:
         """What is asked for."""
-        return list(self._limits())
+        return [replace(limit, table=self.table) for limit in self._limits()]
 
     def met(self, rows: pd.DataFrame, _: Row) -> list[bool]:
         """Which rows of a comparison meet all: a filter of questions."""
@@ -171,6 +175,14 @@ def _listed(limit: Limit, lost: list[Row], name: Callable[[str], str]) -> list[P
     for row in lost[:LISTED]:
         parts += ["; " if parts else "", f"{name(str(row['scheme']))}, ", *limit.said(row)]
     return [*parts, f"; and {len(lost) - LISTED} more" if len(lost) > LISTED else ""]
+
+
+def unmet(needs: Needs, nearest: Row, name: Callable[[str], str]) -> list[Part]:
+    """That no scheme meets all needs, and what the one that comes nearest has."""
+    every = ", ".join(limit.flag for limit in needs.limits)
+    head = f"No scheme measured meets your needs ({every}). The nearest is "
+    lost = had(needs.broken(nearest), nearest)
+    return [f"{head}{name(str(nearest['scheme']))}: ", *lost, "."]
 
 
 def had(limits: Iterable[Limit], row: Row) -> list[Part]:

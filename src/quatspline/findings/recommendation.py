@@ -21,7 +21,7 @@ from quatspline.findings.candidates import (
     rank,
 )
 from quatspline.findings.findings import Finding, lines
-from quatspline.findings.needs import Needs, breaches, had
+from quatspline.findings.needs import Needs, breaches, had, unmet
 from quatspline.findings.phrases import EQUAL, PHRASES
 from quatspline.findings.questions import Filter, Question, Table, answered, by_name
 from quatspline.findings.quotes import Part, without_name
@@ -93,17 +93,11 @@ def _none(needs: Needs, smoothed: bool) -> tuple[Question, ...]:
 
 def _nearest(needs: Needs, table: Table) -> tuple[Part, ...]:
     """That no scheme meets all needs, and the one that comes nearest."""
+    if needs.broken(table.best):
+        return tuple(unmet(needs, table.best, called))
     every = ", ".join(limit.flag for limit in needs.limits)
-    lost = needs.broken(table.best)
-    if not lost:
-        return (
-            f"No recommendation: no scheme that meets your needs ({every}) has a continuous velocity.",
-        )
-    told = had(lost, table.best)
     return (
-        f"No scheme measured meets your needs ({every}). The nearest is {called(table.best['scheme'])}: ",
-        *told,
-        ".",
+        f"No recommendation: no scheme that meets your needs ({every}) has a continuous velocity.",
     )
 
 

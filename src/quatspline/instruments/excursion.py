@@ -22,6 +22,9 @@ from quatspline.quaternion import FloatArray
 SAMPLES = 64
 """Equal parts of a segment between samples; a smooth peak between two is missed by its curvature times 1/128^2 / 2."""
 
+BLOCK = 1 << 16
+"""Samples, of all tracks together, that are held at a time: memory does not grow with the motion."""
+
 HOLD = 1e-12
 """A step below this, in rad, is a hold: rounding has no direction."""
 
@@ -48,8 +51,13 @@ class Excursion(NamedTuple):
 
 def excursion(curve: Curve) -> Excursion:
     """Excursions of a curve's segments, of each of its tracks."""
-    measured = _measured(_sampled(curve), *_ends(curve))
-    return Excursion(*(x.reshape(-1, *curve.keyframes.track_shape) for x in measured))
+    start, stop = _ends(curve)
+    since = _since(curve)
+    few = max(1, BLOCK // since.shape[1] // start.shape[1])
+    blocks = [slice(a, a + few) for a in range(0, len(since), few)]
+    parts = [_measured(_sampled(curve, since[b]), start[b], stop[b]) for b in blocks]
+    shape = (-1, *curve.keyframes.track_shape)
+    return Excursion(*(np.concatenate(x).reshape(shape) for x in zip(*parts, strict=True)))
 
 
 def _ends(curve: Curve) -> tuple[FloatArray, FloatArray]:
@@ -61,11 +69,16 @@ def _ends(curve: Curve) -> tuple[FloatArray, FloatArray]:
     return q[:-1], q[1:]
 
 
-def _sampled(curve: Curve) -> FloatArray:
-    """The curve from each segment's start to just before its end, (segments, SAMPLES + 1, K, 4)."""
+def _since(curve: Curve) -> FloatArray:
+    """Times from each segment's start to just before its end, (segments, SAMPLES + 1)."""
     knots = curve.keyframes.knots
     since = curve.keyframes.inside(np.linspace(0.0, 1.0, SAMPLES + 1)).reshape(-1, SAMPLES + 1)
     since[:, -1] = np.nextafter(knots[1:], 0.0)
+    return since
+
+
+def _sampled(curve: Curve, since: FloatArray) -> FloatArray:
+    """The curve at times (segments, m), (segments, m, K, 4)."""
     return curve.inner(since.reshape(-1)).reshape(*since.shape, -1, 4)
 
 
@@ -81,12 +94,12 @@ def _measured(x: FloatArray, start: FloatArray, stop: FloatArray) -> list[FloatA
     psi = np.unwrap(np.arctan2(across, along), axis=0)
     over = np.maximum(psi - length, -psi).max(axis=0)
     back = (np.maximum.accumulate(psi, axis=0) - psi).max(axis=0)
-    away = _apart(x, start).max(axis=0)
     off = _from_arc(x, start, side, psi, length).max(axis=0)
-    return [
-        2.0 * length,
-        *(2.0 * np.where(hold, away, y) for y in (off, np.maximum(over, 0.0), back)),
-    ]
+    away = _apart(x[:, hold], start[hold]).max(axis=0)
+    found = [off, np.maximum(over, 0.0), back]
+    for each in found:
+        each[hold] = away
+    return [2.0 * y for y in (length, *found)]
 
 
 def _from_arc(

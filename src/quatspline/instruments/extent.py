@@ -28,16 +28,23 @@ def extent(curve: Curve) -> Row:
     the largest |omega| (degrees/t).
     """
     found = excursion(curve)
-    off, hold = np.degrees(found.off), found.hold
+    hold = found.off[found.hold]
     return {
-        "excursion": _above_rounding(off.max()),
-        "hold_rotation": _above_rounding(off[hold].max()) if hold.any() else np.nan,
+        "excursion": float(_largest(found.off)),
+        "hold_rotation": float(_largest(hold)) if hold.size else np.nan,
         "peak_rate": float(np.degrees(peak_rate(curve))),
     }
 
 
-def _above_rounding(angle: float) -> float:
-    return float(angle) if angle > EXACT else 0.0
+def excursions(curve: Curve) -> FloatArray:
+    """The column excursion of every track, (*K,)."""
+    return _largest(excursion(curve).off)
+
+
+def _largest(off: FloatArray) -> FloatArray:
+    """The largest of angles (m, *K) in rad, in degrees and without rounding."""
+    angles = np.degrees(off.max(axis=0))
+    return np.where(angles > EXACT, angles, 0.0)
 
 
 def peak_rate(curve: Curve) -> float:

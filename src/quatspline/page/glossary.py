@@ -119,7 +119,12 @@ GLOSSARY: dict[str, Column] = {
     "over_degrees": Column("worst overshoot beyond the ends of a step", "degrees", "less"),
     "wander_median": Column("median angle from the keyframe during a hold", "degrees", "less"),
     "wander_worst": Column("largest angle from the keyframe during a hold", "degrees", "less"),
-    "compare.excursion": Column("largest angle from the arcs between keyframes", "degrees", "less"),
+    **{
+        f"{table}.excursion": Column(
+            f"largest angle from the arcs between keyframes{over}", "degrees", "less"
+        )
+        for table, over in (("compare", ""), ("kept", ", worst joint"), ("joints", ""))
+    },
     "hold_rotation": Column("largest angle from the keyframe during a hold", "degrees", "less"),
     "peak_rate": Column("largest angular velocity", "degrees/t", "less"),
     "peak_acceleration": Column("largest angular acceleration", "degrees/t²", "less"),

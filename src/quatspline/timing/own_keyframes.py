@@ -31,6 +31,12 @@ def left_out(name: str, count: int) -> str | None:
     return f"{reason}; ask for it by name" if reason else None
 
 
+def too_dear(name: str, count: int, samples: int) -> bool:
+    """Whether so many orientations of every segment are more than is spent on a library's scheme, asked for or not."""
+    cls = scheme(name)
+    return cls.peer is not None and not BUDGET.affords(BUDGET.work(cls, count, (samples, 0, 0)))
+
+
 def seconds_of(keyframes: Keyframes, curves: dict[str, Curve]) -> dict[str, dict[str, float]]:
     """Seconds of set-up and of a sample, interleaved; slow calls are timed once."""
     timings = timed(_calls(keyframes, curves), slow=SLOW, rounds=ROUNDS, least=LEAST)
