@@ -16,9 +16,9 @@ from quatspline.admission import no_unit
 from quatspline.catalogue import scheme, schemes
 from quatspline.curve import Curve
 from quatspline.engines.engine import always_compiled
+from quatspline.fitting.told_noise import told_noise
 from quatspline.instruments.own_keyframes import ENERGIES, measured, steps
 from quatspline.instruments.rescue import solved
-from quatspline.instruments.told_noise import told_noise
 from quatspline.instruments.trials import Row, attempted
 from quatspline.keyframes import Keyframes
 from quatspline.options import among, declared_by, nearest
@@ -136,7 +136,7 @@ def compared(
         rows.append({"scheme": name} | row)
     table = pd.DataFrame(rows).reindex(columns=COLUMNS)
     table["keyframes_length"] = float(steps(keyframes).sum())
-    table["noise"] = np.degrees(told_noise(keyframes))
+    table["noise"] = float(np.degrees(told_noise(keyframes)))
     for name, seconds in seconds_of(keyframes, curves).items():
         table.loc[table["scheme"] == name, list(seconds)] = list(seconds.values())
     for name in ENERGIES:

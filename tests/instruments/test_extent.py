@@ -8,8 +8,8 @@ import pytest
 import quatspline as qs
 from quatspline import keyframes as kf
 from quatspline import quaternion
+from quatspline.fitting.told_noise import told_noise
 from quatspline.instruments.extent import extent, peak_rate
-from quatspline.instruments.told_noise import told_noise
 from walks import walk
 
 
@@ -47,6 +47,17 @@ def test_noise_is_told_from_motion(degrees: float) -> None:
     assert told_noise(kf.prepare(t, q)) == 0.0
     told = np.degrees(told_noise(kf.prepare(t, quaternion.mul(q, errors))))
     assert told == pytest.approx(degrees, rel=0.1)
+
+
+def test_the_noise_of_each_track_is_told_alone() -> None:
+    rng = np.random.default_rng(6)
+    sizes = np.radians([0.0, 0.1, 0.4])
+    smooth = 0.4 * np.sin(np.arange(300) / 30.0)[:, None, None] * [0.6, 0.0, 0.8]
+    q = quaternion.exp(0.5 * (smooth + sizes[:, None] * rng.normal(size=(300, 3, 3))))
+    told = told_noise(kf.prepare(None, q))
+    alone = [float(told_noise(kf.prepare(None, q[:, k]))) for k in range(3)]
+    np.testing.assert_allclose(told, alone, rtol=1e-12)
+    np.testing.assert_allclose(told, sizes, rtol=0.15)
 
 
 def test_steps_of_a_random_walk_are_no_noise() -> None:

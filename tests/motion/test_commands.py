@@ -150,17 +150,32 @@ def test_info_tells_what_is_refused_and_goes_on(
     assert run("info", put(tmp_path / "b.csv", "0,1,0,0,0\n1,9,0,0,0\n")) == 2
 
 
+@pytest.mark.parametrize(("frames", "told"), [(2000, True), (40, True), (39, False)])
 def test_the_noise_is_about_as_large_as_was_added(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    frames: int, told: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    """As `compare` tells it; nothing of few frames."""
     rng = np.random.default_rng(0)
-    t = np.arange(2000) / 100
-    v = np.stack([np.sin(t), np.cos(t), 0.1 * t], axis=1) / 2 + 1e-3 * rng.normal(size=(2000, 3))
-    qs.write_motion(tmp_path / "a.csv", qs.Motion(t, quaternion.exp(v)))
+    t = np.arange(frames) / 100
+    v = np.stack([np.sin(t), np.cos(t), 0.1 * t], axis=1) / 2
+    errors = quaternion.exp(1e-3 * rng.normal(size=v.shape))  # 2 mrad about each axis
+    q = quaternion.mul(quaternion.exp(v), errors)
+    qs.write_motion(tmp_path / "a.csv", qs.Motion(t, q))
     run("info", tmp_path / "a.csv")
-    line = next(li for li in capsys.readouterr().out.splitlines() if li.startswith("noise"))
-    told = np.radians(float(line.split()[1]))
-    assert 2e-3 < told < 5e-3  # 2 mrad in each of three components
+    lines = [li for li in capsys.readouterr().out.splitlines() if li.startswith("noise")]
+    assert len(lines) == told
+    if told:
+        assert "degrees about each axis at most ('body', from third differences)" in lines[0]
+        size = float(lines[0].split()[1])
+        assert np.radians(size) == pytest.approx(2e-3, rel=0.3 if frames == 40 else 0.05)
+        [compared] = qs.compare(t, q, ["slerp"])["noise"]
+        assert size == pytest.approx(compared, rel=5e-3)
+
+
+def test_a_smooth_motion_has_no_noise(walk: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    run("info", walk)
+    [line] = [li for li in capsys.readouterr().out.splitlines() if li.startswith("noise")]
+    assert line.split(maxsplit=1)[1] == "none told from the motion"
 
 
 def test_compare_of_a_skeleton_at_the_frames_left_out(

@@ -6,15 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from quatspline import quaternion
+from quatspline import keyframes, quaternion
+from quatspline.fitting.told_noise import LEAST, told_noise
 from quatspline.motion.motion import Motion
-from quatspline.quaternion import FloatArray
 
 GAP = 5.0
 """Spacings over this many medians are gaps."""
-
-THIRD = np.sqrt(20.0)
-"""The third difference of white noise is this many times as large as the noise."""
 
 STAMPS = {1: "s", 10**3: "ms", 10**6: "us", 10**9: "ns"}
 """Units of stamps by their number in a second."""
@@ -35,7 +32,7 @@ def summary(motion: Motion) -> list[str]:
         rows |= {"duration": f"{motion.times[-1]:.6g} s", **_spacings(motion)}
     if len(motion.quaternions) > 1:
         rows["largest step"] = _step(motion)
-    if len(motion.quaternions) > 3 and not motion.closed:
+    if len(motion.quaternions) >= LEAST:
         rows["noise"] = _noise(motion)
     if motion.unread:
         rows["not read"] = _first(motion.unread)
@@ -86,17 +83,11 @@ def _step(motion: Motion) -> str:
 
 
 def _noise(motion: Motion) -> str:
-    """Rotation vectors of what the steps differ by, differenced twice more: noise outweighs motion there."""
-    q = quaternion.align(quaternion.normalise(motion.quaternions))
-    turns = 2.0 * quaternion.log(_short(quaternion.mul(quaternion.conj(q[:-1]), q[1:])))
-    third = np.diff(turns, n=2, axis=0)
-    per_track = np.median(np.linalg.norm(third, axis=-1), axis=0)
-    track = int(per_track.argmax())
-    step = float(np.median(np.diff(motion.times)))
-    size, jerk = np.degrees(per_track[track]) / THIRD, per_track[track] / step**3
-    told = f"{size:.3g} degrees at most, jerk {jerk:.3g} rad/s^3"
+    """Of the noisiest track, as ``compare`` tells it."""
+    q = motion.quaternions
+    levels = np.degrees(told_noise(keyframes.prepare(motion.stamps[: len(q)], q)))
+    track = int(levels.argmax())
+    if not levels[track]:
+        return "none told from the motion"
+    told = f"{levels[track]:.3g} degrees about each axis at most"
     return f"{told} ({motion.tracks[track]!r}, from third differences)"
-
-
-def _short(q: FloatArray) -> FloatArray:
-    return np.where(q[..., :1] < 0.0, -q, q)

@@ -7,6 +7,7 @@ import numpy as np
 from quatspline import keyframes as kf
 from quatspline.fitting.noise_level import noise_level
 from quatspline.keyframes import Keyframes
+from quatspline.quaternion import FloatArray
 
 LEAST = 40
 """Keyframes from which on noise is told from motion: a third of them must do."""
@@ -19,20 +20,21 @@ NOTICED = 1e-4
 """In rad: what is below is the rounding of a file with few digits."""
 
 
-def told_noise(keyframes: Keyframes) -> float:
-    """The `noise_level` of a single track, rad an axis, where it is white noise; 0 where it is motion.
+def told_noise(keyframes: Keyframes) -> FloatArray:
+    """The `noise_level` of every track, rad an axis, (*K,), where it is white noise; 0 where it is motion.
 
     Few keyframes, or a motion so lively that every third one does not follow it, are given the benefit of
     the doubt.
     """
     if keyframes.count < LEAST:
-        return 0.0
+        return np.zeros(keyframes.track_shape)
     level = _level(keyframes, 0, 1)
     thinned = [_level(keyframes, first, THINNED) for first in range(THINNED)]
-    return level if level > NOTICED and np.mean(thinned) <= GROWS * level else 0.0
+    white = (level > NOTICED) & (np.mean(thinned, axis=0) <= GROWS * level)
+    return np.where(white, level, 0.0)
 
 
-def _level(keyframes: Keyframes, first: int, step: int) -> float:
+def _level(keyframes: Keyframes, first: int, step: int) -> FloatArray:
     """Of every ``step``-th keyframe, as an open curve."""
-    q = keyframes.quaternions[first::step]
-    return float(noise_level(kf.prepare(keyframes.knots[: keyframes.count][first::step], q)))
+    q = keyframes.tracks[:, first::step].swapaxes(0, 1).reshape(-1, *keyframes.track_shape, 4)
+    return noise_level(kf.prepare(keyframes.knots[: keyframes.count][first::step], q))
