@@ -255,6 +255,28 @@ def test_compare_of_a_body_adds_the_errors_at_the_frames_left_out(tmp_path: Path
     assert table.loc["kim", "left_out_rms"] < table.loc["slerp", "left_out_rms"] / 4
 
 
+@pytest.mark.parametrize(
+    ("name", "flags", "told"),
+    [
+        ("a.kitti", (), "has no times of its own: give --frame-rate"),
+        ("a.csv", ("--skip", 3), "--skip 3 leaves none of its 3 frames"),
+        ("a.csv", ("--frame-rate", 10), "--frame-rate 10.0 is of no use in a file of this format"),
+        ("a.amc", (), "no skeleton beside it (looked for a.asf): give --skeleton"),
+    ],
+)
+def test_refusals_name_options_as_flags(
+    name: str, flags: tuple[Any, ...], told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    texts = {
+        "a.kitti": "1 0 0 0 0 1 0 0 0 0 1 0\n" * 2,
+        "a.csv": "t,qw,qx,qy,qz\n0,1,0,0,0\n1,1,0,0,0\n2,1,0,0,0\n",
+        "a.amc": ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 0 0 0 0 0 0\n",
+    }
+    path = put(tmp_path / name, texts[name])
+    assert run("sample", path, "--scheme", "slerp", "--count", 3, *flags) == 2
+    assert capsys.readouterr().err == f"quatspline: {path}: {told}\n"
+
+
 def test_a_pose_that_was_added_is_told_on_stderr(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -264,6 +286,6 @@ def test_a_pose_that_was_added_is_told_on_stderr(
     path = tmp_path / "a.bvh"
     qs.write_motion(path, motion.moved(motion.stamps, q, motion.positions))
     assert run("info", path) == 0
-    assert "skip=1 leaves out a pose" in capsys.readouterr().err
+    assert ": --skip 1 leaves out a pose" in capsys.readouterr().err
     assert run("info", path, "--skip", 1) == 0
     assert capsys.readouterr().err == ""

@@ -24,6 +24,20 @@ REBUILT = (".bvh", ".glb")
 """Formats of one rate: a reduction is written into them rebuilt at its source's times."""
 
 
+FLAGS = {"rate": "--frame-rate"}
+"""Flags that are not spelled as the option of `read_motion` is."""
+
+
+class _Flags(Reading):
+    """Options that were given as flags, which messages name as such."""
+
+    clocks = ("rate",)
+
+    def named(self, option: str, value: object = "") -> str:
+        flag = FLAGS.get(option, f"--{option.replace('_', '-')}")
+        return f"{flag} {value}".rstrip()
+
+
 def motion_of(arguments: argparse.Namespace) -> Motion:
     """The motion of the file that a command was given, open or closed as asked."""
     from quatspline.keyframes import prepare
@@ -46,7 +60,7 @@ def _read(path: str, reading: Reading) -> Motion:
 
 
 def _reading(arguments: argparse.Namespace) -> Reading:
-    return Reading(
+    return _Flags(
         skeleton=arguments.skeleton,
         rate=arguments.frame_rate,
         skip=arguments.skip,

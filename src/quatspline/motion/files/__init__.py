@@ -89,7 +89,8 @@ def read(path: str | Path, reading: Reading | None = None) -> Motion:
     except UnicodeDecodeError:
         raise MotionFileError(f"{path}: not a text file in UTF-8") from None
     if reading.skip >= len(motion.quaternions):
-        what = f"skip={reading.skip} leaves none of its {len(motion.quaternions)} frames"
+        skipped = reading.named("skip", reading.skip)
+        what = f"{skipped} leaves none of its {len(motion.quaternions)} frames"
         raise MotionFileError(f"{path}: {what}")
     motion = replace(motion, max_gap=reading.max_gap)
     return motion.frames(slice(reading.skip, None)) if reading.skip else motion

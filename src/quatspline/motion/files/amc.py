@@ -62,7 +62,8 @@ def _skeleton_of(path: Path, lines: Sequence[str], reading: Reading) -> Path:
         if candidate.is_file():
             return candidate
     looked = ", ".join(dict.fromkeys(name for name in names if not name.endswith(".ASF")))
-    what = f"no skeleton beside it (looked for {looked}): give skeleton="
+    given = reading.named("skeleton")
+    what = f"no skeleton beside it (looked for {looked}): give {given}"
     raise MotionFileError(f"{path}: {what}")
 
 

@@ -44,7 +44,7 @@ def read_bvh(path: Path, reading: Reading) -> Motion:
     times = reading.frame_times(path, count, nominal_rate(period))
     q, x = _local(hierarchy, table)
     if not reading.skip:
-        _tell_leap(path, hierarchy.names, q)
+        _tell_leap(path, hierarchy.names, q, reading.named("skip", 1))
     skeleton = Skeleton(
         np.array(hierarchy.parents, dtype=np.int64),
         np.array(hierarchy.offsets),
@@ -136,7 +136,7 @@ def _local(hierarchy: Tree, table: FloatArray) -> tuple[FloatArray, FloatArray]:
     return q, x
 
 
-def _tell_leap(path: Path, names: Sequence[str], q: FloatArray) -> None:
+def _tell_leap(path: Path, names: Sequence[str], q: FloatArray, remedy: str) -> None:
     """Warn of a first frame that does not belong to the motion."""
     if len(q) < 3:
         return
@@ -145,4 +145,4 @@ def _tell_leap(path: Path, names: Sequence[str], q: FloatArray) -> None:
     if leaps.any():
         joint = int(np.argmax(np.where(leaps, steps[0], 0.0)))
         turned = f"joint {names[joint]!r} turns {steps[0, joint]:.1f} degrees in the first step"
-        warn(path, f"{turned}, over ten times any other: skip=1 leaves out a pose that was added")
+        warn(path, f"{turned}, over ten times any other: {remedy} leaves out a pose that was added")

@@ -7,7 +7,7 @@ import operator
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -41,6 +41,13 @@ class Reading:
     max_gap: float | None = None
     animation: str | int | None = None
 
+    clocks: ClassVar[tuple[str, ...]] = ("times", "rate")
+    """Options that say when frames are."""
+
+    def named(self, option: str, value: object = "") -> str:
+        """An option as those who read so write it, for sentences that tell them to."""
+        return f"{option}={value}"
+
     def __post_init__(self) -> None:
         for name, known in CHOICES.items():
             value = getattr(self, name)
@@ -64,7 +71,7 @@ class Reading:
         for option in fields(self):
             idle = option.name not in (*ALWAYS, *takes)
             if idle and getattr(self, option.name) is not option.default:
-                given = f"{option.name}={getattr(self, option.name)!r}"
+                given = self.named(option.name, repr(getattr(self, option.name)))
                 raise MotionFileError(f"{path}: {given} is of no use in a file of this format")
 
     def frame_times(self, path: Path, count: int, rate: float | None) -> FloatArray:
@@ -73,7 +80,8 @@ class Reading:
             return self._given_times(path, count)
         chosen = self.rate or rate
         if chosen is None:
-            raise MotionFileError(f"{path}: has no times of its own: give times= or rate=")
+            wanted = " or ".join(map(self.named, self.clocks))
+            raise MotionFileError(f"{path}: has no times of its own: give {wanted}")
         return np.arange(count) / chosen
 
     def _given_times(self, path: Path, count: int) -> FloatArray:
