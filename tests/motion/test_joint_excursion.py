@@ -13,8 +13,9 @@ import pytest
 from clips import figure
 
 import quatspline as qs
-from quatspline.catalogue import called
-from quatspline.cli import main
+from quatspline.catalogue import called, scheme
+from quatspline.cli import joint_ranking, main
+from quatspline.findings.needs import Needs
 from quatspline.instruments import kept
 from quatspline.motion import Motion
 from quatspline.timing.own_keyframes import too_dear
@@ -100,7 +101,24 @@ def test_joints_none_of_which_keep_to_their_arcs(
     assert second.startswith(f"Ruled out by --max-excursion 0: {nearest}, ")
 
 
-@pytest.mark.parametrize("flag", ["--local", "--smooth 2", "--max-rate 10"])
+def test_joints_whose_curves_wait_for_few_keyframes(
+    walk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    names = ["kim", "slerp", "squad", "local-quintic"]
+    words = ("compare", walk, "--keep", 8, "--schemes", *names, "--out", tmp_path / "out")
+    assert run(*words, "--local", "--causal", 0) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "Ruled out by --local: kim, shaped by all keyframes."
+    assert lines[1].startswith("Ruled out by --causal 0: squad, waits for 1 keyframe; ")
+    assert lines[4].startswith("slerp ")
+    table = pd.read_csv(tmp_path / "out" / "kept.csv").set_index("scheme")
+    for name in names:
+        cls = scheme(name)
+        wanted = ["all" if n is None else str(n) for n in (cls.support, cls.lookahead)]
+        assert table.loc[name, ["support", "lookahead"]].astype(str).tolist() == wanted
+
+
+@pytest.mark.parametrize("flag", ["--smooth 2", "--max-rate 10", "--max-accel 10"])
 def test_needs_that_only_one_track_has_are_refused_with_a_way_out(
     flag: str, walk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -114,3 +132,21 @@ def test_a_library_that_would_take_too_long_is_dear() -> None:
     assert not too_dear("squad", 10**6, 65)
     assert not too_dear("scipy-slerp", 100, 65)
     assert too_dear("splines-squad", 10**5, 65)
+
+
+def test_what_was_not_measured_meets_no_need_and_breaks_none() -> None:
+    row = {"rms_median": 0.1, "rms_worst": 0.2, "largest": 0.3, "failure": None}
+    row |= {"worst_joint": "a", "largest_joint": "b", "support": "4", "lookahead": "1"}
+    off = {"kim": np.nan, "squad": 3.0, "slerp": 0.0}
+    table = pd.DataFrame([{"scheme": name, "excursion": x} | row for name, x in off.items()])
+    needs = Needs(max_excursion=1.0, table="kept")
+    found = joint_ranking.answer(table, needs)
+    [text] = [finding.text for finding in found]
+    assert text == "Ruled out by --max-excursion 1: squad, 3.00 deg."
+    assert {cell.table for finding in found for cell in finding.cells} == {"kept"}
+    lines = joint_ranking.spoken(found, table, needs)
+    assert [line.split()[0] for line in lines[3:]] == ["slerp", "squad", "kim"]
+    assert lines[-1].split()[4] == "-"
+    assert joint_ranking.meeting(table, needs)["scheme"].tolist() == ["slerp"]
+    order = [line.split()[0] for line in joint_ranking.spoken([], table, Needs())[1:]]
+    assert order == list(off)

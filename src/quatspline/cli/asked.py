@@ -10,8 +10,8 @@ if TYPE_CHECKING:
     from quatspline.motion import Motion
 
 
-OF_JOINTS = "excursion"
-"""The column of a need that is measured of several tracks, too."""
+OF_JOINTS = ("excursion", "support", "lookahead")
+"""The columns of needs that several tracks have, too."""
 
 
 def needs(arguments: argparse.Namespace, motion: Motion) -> Needs:
@@ -44,7 +44,7 @@ def check_tracks(arguments: argparse.Namespace, motion: Motion, needs: Needs) ->
         raise ValueError(
             f"{file}: {count} tracks need --keep K: they are compared at the frames that it leaves out"
         )
-    alone = [limit.flag for limit in needs.limits if limit.column != OF_JOINTS]
+    alone = [limit.flag for limit in needs.limits if limit.column not in OF_JOINTS]
     if count > 1 and alone:
         raise ValueError(
             f"{file}: {alone[0]} applies to a single track, and there are {count}: leave it out, or compare the "

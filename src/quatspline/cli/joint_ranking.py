@@ -19,8 +19,8 @@ from quatspline.instruments.trials import Row, records
 if TYPE_CHECKING:
     import pandas as pd
 
-NEEDED = OF_JOINTS
-"""The column that needs are held against."""
+UNJUDGED: Row = dict.fromkeys(OF_JOINTS, inf)
+"""What nobody measured is held to meet no need."""
 
 ERRORS = ("rms_median", "rms_worst", "largest")
 HEAD = "median    worst     largest   excursion (degrees; the first three at frames left out)"
@@ -28,7 +28,8 @@ HEAD = "median    worst     largest   excursion (degrees; the first three at fra
 
 def answer(table: pd.DataFrame, needs: Needs) -> list[Finding]:
     """That no scheme meets the needs, where it is so, and which schemes break which."""
-    known = table[table["failure"].isna() & table[NEEDED].notna()]
+    measured = table[table["failure"].isna()]
+    known = measured[[_judged(row, needs) for row in records(measured)]]
     if not needs.limits or known.empty:
         return []
     first = _ranked(known, needs)[0]
@@ -62,16 +63,16 @@ def spoken(found: list[Finding], table: pd.DataFrame, needs: Needs) -> list[str]
 def _ranked(measured: pd.DataFrame, needs: Needs) -> list[Row]:
     """Those that meet the needs in the table's order, then the others, the nearest first."""
     rows = records(measured)
-    return sorted(rows, key=lambda row: needs.distance(row | {NEEDED: _or_unbounded(row)}))
+    return sorted(rows, key=lambda row: needs.distance(row if _judged(row, needs) else UNJUDGED))
 
 
-def _or_unbounded(row: Row) -> float:
-    """What nobody measured is held to meet no need."""
-    return inf if isnan(row[NEEDED]) else float(row[NEEDED])
+def _judged(row: Row, needs: Needs) -> bool:
+    """Whether all that is needed was measured."""
+    return not any(isnan(limit.has(row)) for limit in needs.limits)
 
 
 def _shown(row: Row) -> str:
-    off = "-" if isnan(row[NEEDED]) else f"{row[NEEDED]:.4g}"
+    off = "-" if isnan(row["excursion"]) else f"{row['excursion']:.4g}"
     angles = (f"{np.degrees(row[column]):.4g}" for column in ERRORS)
     cells = "  ".join(f"{cell:<8}" for cell in (*angles, off))
     return f"{cells} {row['worst_joint']}, {row['largest_joint']}"
@@ -85,6 +86,6 @@ def _others(left: pd.DataFrame, needs: Needs) -> Iterator[str]:
 def _reason(row: Row, needs: Needs) -> str:
     if isinstance(row["failure"], str):
         return "not measured"
-    if needs.limits and isnan(row[NEEDED]):
+    if not _judged(row, needs):
         return "too slow for its excursion to be measured"
     return "ruled out by your needs" if needs.broken(row) else "ranked lower"

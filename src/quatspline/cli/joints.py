@@ -60,7 +60,7 @@ FORMATS = {"rms_median": ".3e", "rms_worst": ".3e", "largest": ".3e"}
 FORMATS |= {"excursion": ".3g", "seconds": ".2e"}
 COLUMNS = [
     *("scheme", "joints", "rms_median", "rms_worst", "worst_joint", "largest", "largest_joint"),
-    *("excursion", "end_rms", "seconds", "failed_joints", "failure"),
+    *("excursion", "support", "lookahead", "end_rms", "seconds", "failed_joints", "failure"),
 ]
 
 

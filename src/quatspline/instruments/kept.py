@@ -11,6 +11,7 @@ import numpy as np
 from quatspline import quaternion
 from quatspline.inputs.arrays import BoolArray, FloatArray
 from quatspline.instruments.extent import excursions
+from quatspline.instruments.own_keyframes import reaches
 from quatspline.instruments.trials import Row
 from quatspline.motion.keeping import left_out, moving
 from quatspline.motion.motion import Motion
@@ -38,6 +39,7 @@ def row(
     off = _excursions(curve)[joints] if arcs else np.full(len(joints), np.nan)
     return {
         **_over_joints([motion.tracks[k] for k in joints], rms, largest, off),
+        **reaches(curve.pieces[0].orientation),
         "end_rms": None if ends is None else float(np.sqrt((ends**2).mean())),
         "seconds": seconds,
         "failed_joints": "; ".join(f"{name}: {why}" for name, why in curve.failures.items())

@@ -33,8 +33,7 @@ def measured(curve: Curve) -> Row:
         "peak_speed": pace["peak_speed"],
         **_asked_of_a_body(curve, smooth, float(fair["peak"])),
         "curvature": _bending(curve, smooth),
-        "support": _or_all(curve.support),
-        "lookahead": _or_all(curve.lookahead),
+        **reaches(curve),
         "iterations": report.iterations if report else None,
         "solver": report.method if report else None,
         **facts(curve),
@@ -46,6 +45,11 @@ def steps(keyframes: Keyframes) -> FloatArray:
     q = keyframes.quaternions
     after = np.concatenate([q[1:], q[:1]]) if keyframes.closed else q[1:]
     return np.asarray(quaternion.distance(q[: len(after)], after), dtype=float)
+
+
+def reaches(curve: Curve) -> Row:
+    """Columns on how many keyframes shape a segment, and how many of them come after its own two."""
+    return {"support": _or_all(curve.support), "lookahead": _or_all(curve.lookahead)}
 
 
 def _or_all(count: int | None) -> str:

@@ -129,8 +129,14 @@ GLOSSARY: dict[str, Column] = {
     "peak_rate": Column("largest angular velocity", "degrees/t", "less"),
     "peak_acceleration": Column("largest angular acceleration", "degrees/t²", "less"),
     "compare.curvature": Column("curvature energy of the path", "1/rad", "less"),
-    "compare.support": Column("keyframes that shape a segment"),
-    "compare.lookahead": Column("keyframes after a segment's own two that shape it"),
+    **{
+        f"{table}.{name}": Column(meaning)
+        for table in ("compare", "kept")
+        for name, meaning in (
+            ("support", "keyframes that shape a segment"),
+            ("lookahead", "keyframes after a segment's own two that shape it"),
+        )
+    },
     "compare.noise": Column("noise about each axis, estimated from the keyframes", "degrees"),
     "curvature_median": Column(
         "median of curvature energy relative to the least of paths that are no longer", "", "less"
