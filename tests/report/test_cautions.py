@@ -147,7 +147,7 @@ def test_a_motion_that_ends_where_it_began_closes() -> None:
 @pytest.mark.parametrize(
     ("degrees", "said"),
     [
-        ((0, 90, 180, 270, 359), "is 1 degrees from the first, 5 s later"),
+        ((0, 90, 180, 270, 359), "differs from the first by 1°, 5 s later"),
         ((0, 20, 40, 20, 4), None),  # by less than a step, and not by a slip
         ((0, 0.004, 0.006, 0.002, 0.0009), None),  # never away
         ((0, 90, 0), None),
@@ -159,7 +159,7 @@ def test_ends_that_nearly_meet(degrees: tuple[float, ...], said: str | None) -> 
     assert len(lines) == (said is not None)
     for line in lines:
         assert str(said) in line
-        assert "--closed, which needs a last row that repeats the first" in line
+        assert "make the last row equal to the first, and use --closed" in line
 
 
 def test_a_walk_that_stays_near_its_beginning_does_not_close() -> None:

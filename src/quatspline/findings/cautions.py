@@ -208,16 +208,15 @@ def _closing(keyframes: Keyframes, angles: FloatArray, second: float) -> Iterato
     if keyframes.closed or len(q) < LOOP or max(away) < max(HOLD, APART * gap):
         return
     if exact or nearly(gap, median):
-        off = f"is {significant(float(np.degrees(gap)))} degrees from the first"
+        off = f"differs from the first by {significant(float(np.degrees(gap)))}°"
         later = significant(float(keyframes.knots[-1]) / second)
-        row = (
-            "takes the last row as the return"
+        how = (
+            "use --closed, which takes the last row as the return"
             if exact
-            else "needs a last row that repeats the first"
+            else "make the last row equal to the first, and use --closed"
         )
         yield [
-            f"the last keyframe {'repeats the first' if exact else off}, {later} s later. For a loop, use --closed, "
-            f"which {row}."
+            f"the last keyframe {'repeats the first' if exact else off}, {later} s later. For a loop, {how}."
         ]
 
 
