@@ -141,11 +141,12 @@ def test_what_was_not_measured_meets_no_need_and_breaks_none() -> None:
     table = pd.DataFrame([{"scheme": name, "excursion": x} | row for name, x in off.items()])
     needs = Needs(max_excursion=1.0, table="kept")
     found = joint_ranking.answer(table, needs)
-    [text] = [finding.text for finding in found]
+    text, more = (finding.text for finding in found)
+    assert more == "Not held against your needs, because measuring would take too long: kim."
     assert text == "Ruled out by --max-excursion 1: squad, 3.00 deg."
     assert {cell.table for finding in found for cell in finding.cells} == {"kept"}
     lines = joint_ranking.spoken(found, table, needs)
-    assert [line.split()[0] for line in lines[3:]] == ["slerp", "squad", "kim"]
+    assert [line.split()[0] for line in lines[4:]] == ["slerp", "squad", "kim"]
     assert lines[-1].split()[4] == "-"
     assert joint_ranking.meeting(table, needs)["scheme"].tolist() == ["slerp"]
     order = [line.split()[0] for line in joint_ranking.spoken([], table, Needs())[1:]]

@@ -29,12 +29,18 @@ HEAD = "median    worst     largest   excursion (degrees; the first three at fra
 def answer(table: pd.DataFrame, needs: Needs) -> list[Finding]:
     """That no scheme meets the needs, where it is so, and which schemes break which."""
     measured = table[table["failure"].isna()]
-    known = measured[[_judged(row, needs) for row in records(measured)]]
-    if not needs.limits or known.empty:
+    judged = [_judged(row, needs) for row in records(measured)]
+    known = measured[judged]
+    if not needs.limits or measured.empty:
         return []
-    first = _ranked(known, needs)[0]
-    said = [unmet(needs, first, called)] if needs.broken(first) else []
+    first = _ranked(measured, needs)[0]
+    said = [unmet(needs, first, called)] if _judged(first, needs) and needs.broken(first) else []
     said += breaches(needs, known, called)
+    if not all(judged):
+        slow = ", ".join(map(called, measured["scheme"][~np.array(judged)]))
+        said.append(
+            [f"Not held against your needs, because measuring would take too long: {slow}."]
+        )
     return [Finding(ADVICE, tuple(parts)) for parts in said]
 
 
