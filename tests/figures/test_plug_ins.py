@@ -1,0 +1,107 @@
+"""Schemes that do not come with the package: in colour, with looks and rows of their own, and called nobody else's."""
+
+from __future__ import annotations
+
+import importlib
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from matplotlib.figure import Figure
+
+from desk import SCHEME
+from quatspline import catalogue
+from quatspline.figures import matrix, named, rows
+from quatspline.figures.looks import FAMILIES, scheme_style
+from quatspline.figures.named import FEW, NAMED, coloured
+from quatspline.page.plots import scheme_look
+
+MINE = [f"mine-{letter}" for letter in "abcdef"]
+
+
+def plug_in(folder: Path, name: str, claims: str = "pass") -> None:
+    text = SCHEME.format(fit="pass", claims=claims)
+    (folder / f"{name.replace('-', '_')}.py").write_text(text, encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Six schemes of a user, and one more that wraps a library."""
+    place = tmp_path_factory.mktemp("mine")
+    for name in MINE:
+        plug_in(place, name)
+    plug_in(place, "wrapped", 'peer = "numpy"')
+    return place
+
+
+@pytest.fixture(autouse=True)
+def _found(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(catalogue.FOLDERS, str(folder))
+
+
+def test_a_plug_in_is_in_colour_and_takes_the_last_place_only_where_there_is_none_left() -> None:
+    assert coloured(["mine-a", "squad", "kim", "hermite"]) == ("squad", "kim", "mine-a")
+    assert coloured([*NAMED, "hermite", "mine-a"]) == (*NAMED[:-1], "mine-a")
+    assert coloured([*NAMED, "hermite"]) == NAMED
+
+
+def test_of_many_plug_ins_the_first_few_are_in_colour() -> None:
+    assert coloured([*MINE, *NAMED]) == (*NAMED[: len(NAMED) - FEW], *MINE[:FEW])
+
+
+def test_captions_name_what_is_in_the_figure_alone() -> None:
+    assert named.said(["mine-a", "squad", "hermite"]) == (
+        " In colour squad and mine-a, in grey all other schemes."
+    )
+    assert named.said(["mine-a", "squad", "kim"]) == ""
+    assert named.said(["mine-a", "wrapped"]) == " Third-party schemes are hollow."
+    told = named.said([*NAMED, "hermite"])
+    assert told.endswith("and scipy-rotation-spline, in grey all other schemes; "
+                         "third-party schemes are hollow.")  # fmt: skip
+
+
+def test_looks_of_plug_ins_are_nobody_elses() -> None:
+    members = [name for family in FAMILIES for name in family.members]
+    theirs = [scheme_style(name) for name in members]
+    looks = [scheme_style(name) for name in MINE[:FEW]]
+    for kind in ("color", "marker"):
+        assert not {look[kind] for look in looks} & {look[kind] for look in theirs}
+    for kind in ("marker", "linestyle"):
+        assert len({look[kind] for look in looks}) == FEW
+    assert not any(scheme_look(name)["symbol"].endswith("-open") for name in MINE)
+
+
+def test_a_plug_in_is_hollow_if_it_wraps_a_library() -> None:
+    assert scheme_style("wrapped")["markerfacecolor"] == "white"
+    assert scheme_look("wrapped")["symbol"].endswith("-open")
+
+
+def test_rows_and_curves_show_a_plug_in_in_its_colour() -> None:
+    names, own = ["hermite", "mine-a"], scheme_style("mine-a")
+    ax = Figure().subplots()
+    rows.mark(ax, pd.Series(dict.fromkeys(names, 1.0)), names)
+    rows.label(ax, names, {})
+    marked = ax.lines[1]
+    assert (marked.get_color(), marked.get_marker()) == (own["color"], own["marker"])
+    assert marked.get_markerfacecolor() == own["color"]
+    assert [text.get_color() for text in ax.get_yticklabels()] == [rows.BEHIND, "black"]
+    x = pd.Series([1.0, 2.0])
+    ends = named.draw_curves(ax, [(name, x, x) for name in names], coloured(names))
+    assert list(ends) == ["mine-a"]
+
+
+def test_a_plug_in_that_answers_as_others_do_has_a_row_of_its_own() -> None:
+    kinds = pd.DataFrame({"a": "holds"}, ["mine-a", "slerp", "scipy-slerp"])
+    assert matrix.alike(kinds, kinds) == {"mine-a": [], "slerp": ["scipy-slerp"]}
+
+
+@pytest.mark.parametrize("name", ["accuracy", "choosing", "cost", "excursion", "fairness", "speed"])
+def test_captions_of_experiments_name_schemes_that_were_run_alone(name: str) -> None:
+    experiment = importlib.import_module(f"experiments.{name}")
+    reference = Path(__file__).parents[2] / "results" / "reference" / f"{name}.csv"
+    table = pd.read_csv(reference)
+    run = table[table["scheme"].isin(["squad", "kim", "hermite", "log-cubic"])]
+    mine = run[run["scheme"] == "hermite"].assign(scheme="mine-a")
+    caption = experiment.caption(pd.concat([run, mine]))
+    assert " In colour squad, kim and mine-a, in grey all other schemes." in caption
+    assert "hollow" not in caption
