@@ -11,10 +11,12 @@ from matplotlib.figure import Figure
 
 from desk import SCHEME
 from quatspline import catalogue
+from quatspline.cli import main
 from quatspline.figures import matrix, named, rows
 from quatspline.figures.looks import FAMILIES, scheme_style
 from quatspline.figures.named import FEW, NAMED, coloured
 from quatspline.page.plots import scheme_look
+from quatspline.runs.experiment import Run
 
 MINE = [f"mine-{letter}" for letter in "abcdef"]
 
@@ -105,3 +107,40 @@ def test_captions_of_experiments_name_schemes_that_were_run_alone(name: str) -> 
     caption = experiment.caption(pd.concat([run, mine]))
     assert " In colour squad, kim and mine-a, in grey all other schemes." in caption
     assert "hollow" not in caption
+
+
+def test_what_a_plug_in_claims_is_not_said_by_this_package() -> None:
+    claims = importlib.import_module("experiments.claims")
+
+    def sources(name: str) -> set[str]:
+        return {claim.source for claim in claims._of_class(Run(quick=True), catalogue.scheme(name))}
+
+    assert sources("mine-a") == {"plug-in"}
+    assert sources("wrapped") == {"plug-in", "peer"}
+    assert sources("squad") == {"ours"}
+    assert sources("scipy-slerp") == {"ours", "peer"}
+
+
+def test_an_unusable_plug_in_is_no_library(folder: Path) -> None:
+    claims = importlib.import_module("experiments.claims")
+    broken = folder / "broken.py"
+    broken.write_text("import nowhere", encoding="utf-8")
+    try:
+        (row,) = claims.measure_cell(Run(quick=True), "broken")
+    finally:
+        broken.unlink()
+    assert (row["source"], row["verdict"]) == ("plug-in", "not measurable")
+
+
+def test_lists_say_whose_a_scheme_is(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["list"]) == 0
+    lines = {line.split()[0]: line for line in capsys.readouterr().out.splitlines()}
+    whose = {
+        "mine-a": "plug-in  Stairs",
+        "wrapped": "plug-in (numpy)  Stairs",
+        "quintic": "quatspline (ours)  Quintic",
+        "quartic": "quatspline  ",
+        "scipy-slerp": "scipy  ",
+    }
+    for name, said in whose.items():
+        assert " ".join(said.split()) in " ".join(lines[name].split()), name
