@@ -32,13 +32,14 @@ PAPER = False
 KEYS: list[str] = []
 NOTE = (
     "source: ours or plug-in (attributes of the class, of this package or not), peer (what the library publishes) or "
-    "paper (a publication, by default that of 2017). verdict: holds, departs, not measurable (with the reason in failure), "
-    "or not decided at this size: it holds in the cases of quick size, and full size has more. fault: whether a "
-    "departure is the scheme's fault or, if a publication claims too much, the publication's. case: a line of Python that prints the value "
-    "measured. It is the first of the cases tried, from few keyframes to more, in which a claim departs; otherwise "
-    "the one in which it holds least well. continuity holds if the measured k is at least the claimed one, order "
-    "within 0.3. Keyframes must be met to 1e-6 rad; published rates must agree with the curve's to 1e-6 (omega) or "
-    "1e-3 (alpha) of their size. Cost is counted in exponentials and logarithms; half of the printed ratio is enough."
+    "paper (a publication, by default that of 2017). verdict: holds, departs, not measurable (with the reason in "
+    "failure), or not decided at this size: it holds in the cases of quick size, and full size has more. fault: "
+    "whether a departure is the scheme's fault or, if a publication claims too much, the publication's. case: a line "
+    "of Python that prints the value measured. It is the first of the cases tried, from few keyframes to more, in "
+    "which a claim departs; otherwise the one in which it holds least well. continuity holds if the measured k is at "
+    "least the claimed one, order within 0.3. Keyframes must be met to 1e-6 rad; published rates must agree with the "
+    "curve's to 1e-6 (omega) or 1e-3 (alpha) of their size. Cost is counted in exponentials and logarithms; half of "
+    "the printed ratio is enough."
 )
 MET = 1e-6
 """Largest angle (rad) at a keyframe that counts as passing through it."""

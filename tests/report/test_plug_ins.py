@@ -3,22 +3,38 @@
 from __future__ import annotations
 
 import importlib
+import json
+import re
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pandas as pd
 import pytest
 from matplotlib.figure import Figure
 
 from desk import SCHEME
 from quatspline import catalogue
-from quatspline.cli import main
+from quatspline.cli import main, ranking
+from quatspline.comparing import MET
 from quatspline.figures import matrix, named, rows
 from quatspline.figures.looks import FAMILIES, scheme_style
 from quatspline.figures.named import FEW, NAMED, coloured
+from quatspline.findings.needs import Needs
+from quatspline.page.motion import opening
 from quatspline.page.plots import scheme_look
 from quatspline.runs.experiment import Run
+from walks import walk
 
 MINE = [f"mine-{letter}" for letter in "abcdef"]
+
+
+def json_of(folder: Path, key: str) -> Any:
+    """What the page's scripts read."""
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    found = re.search(rf'<script type="application/json" id="{key}">(.*?)</script>', page)
+    assert found
+    return json.loads(found[1])
 
 
 def plug_in(folder: Path, name: str, claims: str = "pass") -> None:
@@ -107,6 +123,60 @@ def test_captions_of_experiments_name_schemes_that_were_run_alone(name: str) -> 
     caption = experiment.caption(pd.concat([run, mine]))
     assert " In colour squad, kim and mine-a, in grey all other schemes." in caption
     assert "hollow" not in caption
+
+
+def test_the_player_opens_on_what_was_asked_for_then_on_plug_ins_that_were_run() -> None:
+    there = ["kim", "mine-a", "nielson", "quartic", "squad"]
+    assert opening((), there, ["squad", "mine-a", "kim"]) == ["mine-a", "kim"]
+    assert opening((), there, ["squad", "kim"]) == ["kim", "squad"]
+    assert opening((), there, [name for name in there if name != "mine-a"]) == [
+        "quartic",
+        "nielson",
+    ]
+    assert opening(("squad",), there, there) == ["squad", "mine-a"]
+    assert opening(("squad",), ["kim"], ["squad"]) == ["kim"]  # where what was run does not apply
+
+
+@pytest.fixture(scope="module")
+def compared(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What compare makes of noisy keyframes, with a scheme of a user and one that only passes near them."""
+    out, file = tmp_path_factory.mktemp("compared"), tmp_path_factory.mktemp("keys") / "keys.csv"
+    rows = np.column_stack([np.arange(9.0), walk(9, 50.0)])
+    np.savetxt(file, rows, delimiter=",", header="t,w,x,y,z", comments="")
+    schemes = ["mine-a", "smoothing-spline", "kim", "quartic", "slerp", "local-quintic"]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv(catalogue.FOLDERS, str(folder))
+        assert main(["compare", str(file), "--schemes", *schemes, "--out", str(out)]) == 0
+    return out
+
+
+def test_the_page_of_a_comparison_opens_on_the_recommended_scheme_beside_the_plug_in(
+    compared: Path,
+) -> None:
+    best = pd.read_csv(compared / "compare.csv")["scheme"][0]
+    assert f"Take {catalogue.called(best)}" in (compared / "recommendation.md").read_text(
+        encoding="utf-8"
+    )
+    assert json_of(compared, "scenes")[0]["pair"] == [best, "mine-a"]
+
+
+def test_the_table_of_a_comparison_is_ranked_as_in_the_terminal(compared: Path) -> None:
+    table = pd.read_csv(compared / "compare.csv")
+    lines = ranking.table(table, Needs())[1 : ranking.ROWS + 1]
+    assert [line.split()[0] for line in lines] == list(table["scheme"][: ranking.ROWS])
+    passes = (table["misses"] <= MET) & (table["continuity"] >= 0)
+    assert passes.any()
+    assert passes.is_monotonic_decreasing
+    assert table.loc[~passes, "torque"].min() < table.loc[passes, "torque"].min()
+    assert json_of(compared, "rankings")["compare"]["column"] is None
+
+
+def test_what_was_not_measured_comes_last_whatever_it_needs(compared: Path) -> None:
+    table = pd.read_csv(compared / "compare.csv")
+    failed = table["scheme"] == table["scheme"][0]
+    some = table.assign(failure=np.where(failed, "it failed", None))
+    assert ranking.sort(some, Needs())["scheme"].iloc[-1] == table["scheme"][0]
+    assert sorted(ranking.sort(some, Needs())["scheme"]) == sorted(table["scheme"])
 
 
 def test_what_a_plug_in_claims_is_not_said_by_this_package() -> None:
