@@ -79,7 +79,8 @@ class MinimumTorqueSpline(SegmentCurve):
         pieces = keyframes.tracks.shape[0] * keyframes.spacings.size * m
         if pieces > MOST:
             raise ValueError(
-                f"subintervals={m}: {pieces:,} of them are too many, at most {MOST:,} are solved for"
+                f"{pieces // m:,} steps between keyframes of {m} subintervals each (subintervals={m}) are "
+                f"{pieces:,}: at most {MOST:,} are solved for"
             )
         h = np.repeat(keyframes.spacings / m, m)
         knots = np.append(keyframes.inside(np.arange(m) / m), keyframes.knots[-1])

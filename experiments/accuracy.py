@@ -20,7 +20,7 @@ TITLE = "Accuracy on a smooth motion"
 PAPER = False
 KEYS = ["knots", "scheme", "keyframes"]
 NOTE = (
-    "Largest errors relative to the analytic truth; lower is better. 'inner' is the window [3, 7] of [0, 10], away "
+    "Largest errors against the analytic truth; lower is better. 'inner' is the window [3, 7] of [0, 10], away "
     "from the ends. slope, slope_omega and slope_alpha: orders of inner_angle, inner_omega and inner_alpha relative "
     "to the previous level; regression: over the last five levels. spacing_1deg, spacing_0.1deg, spacing_0.01deg: the "
     "largest spacing below which inner_angle stays under that angle; larger is better. unreached says why there is "

@@ -17,9 +17,9 @@ PAPER = False
 KEYS = ["degree", "ends", "keyframes"]
 NOTE = (
     "moving-frame through keyframes of a closed motion, a spin of one turn times a roll of two; lower is better. "
-    "order: of angle, relative to the previous level. constant: angle divided by h^(k+1); expected: what the interior "
-    "of a flat spline predicts, which applies everywhere on closed curves. axis_constant: the largest error of an "
-    "entry of the axes divided by h^(k+1) max |R^(k+1)|; axis_bound: the same for the worst function on uniform "
+    "order: of angle, from the previous level to this one. constant: angle divided by h^(k+1); expected: what the "
+    "interior of a flat spline predicts, which applies everywhere on closed curves. axis_constant: the largest error "
+    "of an entry of the axes divided by h^(k+1) max |R^(k+1)|; axis_bound: the same for the worst function on uniform "
     "knots. 'given': complete ends with the motion's own velocities and, from degree 5, accelerations; 'complete': "
     "all of them estimated. Errors below 1e-14 rad are rounding and have no constant."
 )

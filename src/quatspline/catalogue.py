@@ -145,11 +145,17 @@ def scheme(name: str) -> type[Curve]:
     """
     everything = found()
     if not isinstance(name, str) or name not in everything:
-        raise ValueError(f"unknown scheme {name!r}: {nearest(name, everything)}")
+        raise ValueError(f"unknown scheme {name!r}: {nearest(name, everything)}{_absent()}")
     item = everything[name]
     if item.scheme is None:
         raise ValueError(f"scheme {name!r} cannot be used: {item.problem}")
     return item.scheme
+
+
+def _absent() -> str:
+    """A word on folders that `FOLDERS` names and that are not there: a name that is not found may be in one."""
+    missing = [str(folder) for folder in folders() if not folder.is_dir()]
+    return f" ({FOLDERS} names {', '.join(missing)}, which is no folder)" if missing else ""
 
 
 def ours(name: str) -> bool:

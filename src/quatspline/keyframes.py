@@ -234,8 +234,13 @@ def _times(
     if t.shape != (n + closed,):
         if t.dtype.kind == "f":
             refuse_infinite("times", t)
-        wanted = f"({n + closed},)" + (" (one more than keyframes: the return)" if closed else "")
-        raise ValueError(f"times has shape {t.shape}: expected {wanted} for {n} keyframes")
+        message = f"times has shape {t.shape}: expected ({n + closed},) for {n} keyframes"
+        if closed:
+            message += (
+                ", since the last time is that of the return to the first; where the last keyframe "
+                "repeats the first, leave it out: quaternions[:-1]"
+            )
+        raise ValueError(message)
     kind = t.dtype
     if kind.kind == "f" and kind.itemsize <= 8:
         t = float_array("times", t)

@@ -84,6 +84,21 @@ def test_unknown_names_offer_the_nearest() -> None:
             call("_template")
 
 
+def test_a_folder_that_is_not_there_is_told_with_an_unknown_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(catalogue.FOLDERS, str(tmp_path / "gone"))
+    with pytest.raises(
+        ValueError, match=r"\(QUATSPLINE_BASELINES names .*gone, which is no folder"
+    ):
+        qs.scheme("mine")
+    monkeypatch.setenv(catalogue.FOLDERS, str(tmp_path))
+    with pytest.raises(
+        ValueError, match=r"unknown scheme 'mine': did you mean [^()]*$|known: [^()]*$"
+    ):
+        qs.scheme("mine")
+
+
 def test_names_that_are_no_strings() -> None:
     for wrong in (None, 3, ["quartic"], qs.QuarticSpline):
         with pytest.raises(ValueError, match="unknown scheme"):

@@ -421,7 +421,7 @@ def test_a_last_row_near_the_first_is_told_apart(tmp_path: Path) -> None:
     closed = returning(Motion(np.arange(4.0), q))
     assert closed.note == (
         "closed: the last row is 0.0057 degrees from the first orientation; it is kept as a "
-        "keyframe, and the curve returns one step later"
+        "keyframe, and the curve returns one step later (to return at that row, make it equal to the first)"
     )
     assert (len(closed.stamps), len(closed.quaternions)) == (5, 4)
     with pytest.raises(ValueError, match=r"its return; the last row is 0\.0057 degrees from"):

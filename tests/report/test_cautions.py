@@ -113,6 +113,9 @@ def test_the_step_that_closes_counts() -> None:
             "are 5000000 apart (median), like nanoseconds at 200 Hz",
         ),
         (10_000.0 * np.arange(5), "like microseconds at 100 Hz"),
+        (1.5e6 * np.arange(5), "if microseconds, --time-unit us"),
+        (150.0 * np.arange(5), "If they are milliseconds or frames, use --time-unit ms"),
+        (150.5 * np.arange(5), None),
         (60.0 * np.arange(5), None),
         (0.5 * np.arange(5), None),
     ],
@@ -144,7 +147,7 @@ def test_a_motion_that_ends_where_it_began_closes() -> None:
 @pytest.mark.parametrize(
     ("degrees", "said"),
     [
-        ((0, 90, 180, 270, 359), "is 1 degrees from the first, 5 s later"),
+        ((0, 90, 180, 270, 359), "differs from the first by 1°, 5 s later"),
         ((0, 20, 40, 20, 4), None),  # by less than a step, and not by a slip
         ((0, 0.004, 0.006, 0.002, 0.0009), None),  # never away
         ((0, 90, 0), None),
@@ -156,7 +159,7 @@ def test_ends_that_nearly_meet(degrees: tuple[float, ...], said: str | None) -> 
     assert len(lines) == (said is not None)
     for line in lines:
         assert str(said) in line
-        assert "--closed, which needs a last row that repeats the first" in line
+        assert "make the last row equal to the first, and use --closed" in line
 
 
 def test_a_walk_that_stays_near_its_beginning_does_not_close() -> None:

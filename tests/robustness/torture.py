@@ -40,6 +40,7 @@ class Tally:
     """What became of the trials of one kind."""
 
     kind: str
+    counts_lost: bool = False
     tried: int = 0
     left: int = 0
     survived: int = 0
@@ -60,6 +61,13 @@ class Tally:
         self.tracebacks += traces
         if not well or lost or orphaned or traces:
             self.notes.append(f"{self.kind}: {what}: {said[-1500:]}")
+
+    def line(self, columns: Sequence[str]) -> str:
+        """Its row; lost cells are counted where a journal was read before the trial."""
+        counts = [f"{getattr(self, name):12}" for name in columns]
+        if not self.counts_lost:
+            counts[columns.index("lost")] = f"{'-':>12}"
+        return f"{self.kind:28}{''.join(counts)}"
 
     @property
     def clean(self) -> bool:
@@ -98,7 +106,7 @@ class Torture:
 
     def kills(self, number: signal.Signals, count: int) -> Tally:
         """A signal at random moments after the run has begun its manifest, jobs 1 to 3."""
-        tally = Tally(f"{number.name} at random moments")
+        tally = Tally(f"{number.name} at random moments", counts_lost=True)
         for i in self._times(tally, count):
             self.tiny.clear()
             process = self.tiny.start(jobs=1 + i % 3)
@@ -129,20 +137,23 @@ class Torture:
             if process.returncode == 0:  # there are no more moments
                 break
             killed = process.returncode == -signal.SIGKILL
-            self._after(tally, self.tiny.kept(), said, fine=killed, what=f"write {moments[i]}")
+            self._after(tally, None, said, fine=killed, what=f"write {moments[i]}")
         return tally
 
     def _after(
         self,
         tally: Tally,
-        before: set[tuple[str, str]],
+        before: set[tuple[str, str]] | None,
         said: str,
         *,
         fine: bool,
         what: str,
     ) -> None:
-        """Count a trial that ended a run: what is left of it, and whether it goes on."""
-        orphans, lost = self.tiny.orphans(), self.tiny.lost(before)
+        """Count a trial that ended a run: what is left of it, and whether it goes on.
+
+        ``before``: what its journals held, None where that cannot be known.
+        """
+        orphans, lost = self.tiny.orphans(), 0 if before is None else self.tiny.lost(before)
         well, more = self._finish()
         tally.count(fine and well, said + more, lost=lost, orphaned=len(orphans), what=what)
 
@@ -273,7 +284,7 @@ class Torture:
         """Count a run that could not write all: it said so, and goes on where it can."""
         last = said.splitlines()[-1:] or [""]
         fine = status == 0 or (status == 1 and "cannot be written" in last[0])
-        self._after(tally, self.tiny.kept(), said, fine=fine, what=f"{what}: status {status}")
+        self._after(tally, None, said, fine=fine, what=f"{what}: status {status}")
 
     def read_only(self, count: int) -> Tally:
         """A disk that cannot be written: told in a line, and finished where it can."""
@@ -284,7 +295,7 @@ class Torture:
                 status, said = self.tiny.run()
                 _mount(place, "-o", "remount,rw")
                 fine = status in (1, 2) and len(said.splitlines()) == 1
-                self._after(tally, self.tiny.kept(), said, fine=fine, what=f"status {status}")
+                self._after(tally, None, said, fine=fine, what=f"status {status}")
                 self.tiny.clear()
         return tally
 
@@ -429,8 +440,7 @@ def main() -> int:
                 continue
             tally = trial()
             tallies.append(tally)
-            counts = "".join(f"{getattr(tally, name):12}" for name in columns)
-            print(f"{tally.kind:28}{counts}", flush=True)
+            print(tally.line(columns), flush=True)
     for note in [note for tally in tallies for note in tally.notes]:
         print(f"\n{note}", file=sys.stderr)
     return 0 if all(tally.clean for tally in tallies) else 1

@@ -298,7 +298,7 @@ def test_sample_carries_positions_in_every_format_and_names_what_it_does_not(des
     path = desk.keyframes("k.csv", text)
     done = desk("sample", path, "--scheme", "stairs", "--count", 3)
     assert done.returncode == 0
-    assert done.stderr == f"quatspline: {path}: not carried: 'label'\n"
+    assert done.stderr == f"quatspline: {path}: not read: 'label'\n"
     assert done.stdout.splitlines()[:3] == [
         "t,qw,qx,qy,qz,tx,ty,tz",
         "0.0,1.0,0.0,0.0,0.0,5.0,6.0,7.0",
@@ -337,7 +337,8 @@ def test_sample_tells_which_reading_of_a_closed_motion_was_taken(desk: Desk) -> 
     assert done.stdout.splitlines()[-1] == "4.0,1.0,0.0,0.0,0.0"
     assert done.stderr == (
         f"quatspline: {path}: closed: the last row is 0.011 degrees from the first orientation; it "
-        "is kept as a keyframe, and the curve returns one step later\n"
+        "is kept as a keyframe, and the curve returns one step later "
+        "(to return at that row, make it equal to the first)\n"
     )
 
 

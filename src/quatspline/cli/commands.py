@@ -84,6 +84,10 @@ def _served(arguments: argparse.Namespace) -> int:
     """Serve a command; a scheme that would leave the program is an error like others, and no signal."""
     try:
         return COMMANDS[arguments.name](arguments)
+    except BrokenPipeError as error:
+        if error.filename == STDOUT:
+            raise
+        return _unforeseen(error)
     except (Exception, Ended):
         raise
     except BaseException as error:

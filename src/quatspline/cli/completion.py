@@ -2,7 +2,6 @@
 
 bash and zsh learn it by ``eval "$(register-python-argcomplete quatspline)"``.
 """
-# PYTHON_ARGCOMPLETE_OK
 
 from __future__ import annotations
 

@@ -82,7 +82,7 @@ def _columns(frame: pd.DataFrame, second: float) -> list[tuple[str, Show]]:
         *(holds if frame["hold_rotation"].notna().any() else []),
         ("peak deg/s", lambda row: number(row["peak_rate"] * second)),
         ("peak deg/s^2", lambda row: number(row["peak_acceleration"] * second**2)),
-        ("lookahead", lambda row: str(row["lookahead"])),
+        ("lookahead", lambda row: str(row["lookahead"]).removesuffix(".0")),
         ("ns/sample", lambda row: number(row["seconds_per_sample"] * 1e9)),
     ]
 

@@ -37,6 +37,8 @@ def motion_of(arguments: argparse.Namespace) -> Motion:
         prepare(motion.stamps, motion.quaternions, closed=closed, align=align)
     if motion.note:
         note(f"{path}: {motion.note}")
+    if motion.unread:
+        note(f"{path}: not read: {', '.join(map(repr, motion.unread))}")
     return motion
 
 
@@ -84,8 +86,6 @@ def sample(arguments: argparse.Namespace) -> None:
         samples = sampled(curve, grid(curve, arguments.rate, arguments.count))
     else:
         samples = _at(curve, arguments.at)
-    if motion.unread:
-        note(f"{arguments.keyframes}: not carried: {', '.join(map(repr, motion.unread))}")
     if arguments.file is not None:
         _write(arguments.file, samples)
         return

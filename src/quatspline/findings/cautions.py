@@ -49,7 +49,13 @@ APART = 10.0
 
 COARSE, FINE = 1e4, 1e6
 """Median spacings from which on times count microseconds, or nanoseconds: in seconds they would be hours apart."""
-CLOCKS = {"microseconds": ("us", 1e6), "nanoseconds": ("ns", 1e9)}
+CLOCKS = {
+    "microseconds": ("us", 1e6, "milliseconds", "ms"),
+    "nanoseconds": ("ns", 1e9, "microseconds", "us"),
+}
+"""Each with its unit, how many are in a second, and what the same numbers count where they are farther apart."""
+SLOW = 0.25
+"""Degrees per unit of time below which the fastest step hardly counts seconds: a satellite takes more."""
 
 
 def cautions(
@@ -65,7 +71,7 @@ def cautions(
     angles, h = np.degrees(steps(keyframes)), keyframes.spacings / second
     pair = partial(_pair, keyframes, second)
     said = [
-        *([] if told else _clock(keyframes)),
+        *([] if told else _clock(keyframes, angles)),
         *_crowded(h, pair),
         *_gaps(h, angles, pair),
         *_holds(angles, pair, frame),
@@ -80,20 +86,29 @@ def cautions(
 # -- times ----------------------------------------------------------------------------------------
 
 
-def _clock(keyframes: Keyframes) -> Iterator[list[Part]]:
-    """Times that hardly count seconds."""
-    since, spacing = keyframes.knots, float(np.median(keyframes.spacings))
-    if keyframes.count > 2 and np.array_equal(since, np.arange(since.size)):
+def _clock(keyframes: Keyframes, angles: FloatArray) -> Iterator[list[Part]]:
+    """Whole numbers that hardly count seconds: 0, 1, 2 ..., or far apart, or little turns from one to the next."""
+    since, h = keyframes.knots, keyframes.spacings
+    spacing, fastest = float(np.median(h)), float((angles / h).max())
+    if keyframes.count <= 2 or not np.array_equal(since, np.round(since)):
+        return
+    if np.array_equal(since, np.arange(since.size)):
         yield [
             f"counted from the first, the times are 0, 1, 2 ... {since[-1]:.0f}, like frame numbers. They are taken as "
             'seconds. If they are frames, give the length of one, as in --time-unit "1/30 s".'
         ]
-    elif spacing >= COARSE and np.array_equal(since, np.round(since)):
+    elif spacing >= COARSE:
         name = "nanoseconds" if spacing >= FINE else "microseconds"
-        short, count = CLOCKS[name]
+        short, count, other, longer = CLOCKS[name]
         yield [
             f"the times are {significant(spacing)} apart (median), like {name} at {significant(count / spacing)} Hz. "
-            f"They are taken as seconds. If they are {name}, use --time-unit {short}."
+            f"They are taken as seconds. If they are {name}, use --time-unit {short}; if {other}, --time-unit {longer}."
+        ]
+    elif 0.0 < fastest < SLOW:
+        yield [
+            f"the times are whole numbers, {significant(spacing)} apart (median), and the fastest step turns at "
+            f"{significant(fastest)} degrees per unit. They are taken as seconds. If they are milliseconds or frames, "
+            'use --time-unit ms, or the length of a frame, as in --time-unit "1/30 s".'
         ]
 
 
@@ -193,16 +208,15 @@ def _closing(keyframes: Keyframes, angles: FloatArray, second: float) -> Iterato
     if keyframes.closed or len(q) < LOOP or max(away) < max(HOLD, APART * gap):
         return
     if exact or nearly(gap, median):
-        off = f"is {significant(float(np.degrees(gap)))} degrees from the first"
+        off = f"differs from the first by {significant(float(np.degrees(gap)))}°"
         later = significant(float(keyframes.knots[-1]) / second)
-        row = (
-            "takes the last row as the return"
+        how = (
+            "use --closed, which takes the last row as the return"
             if exact
-            else "needs a last row that repeats the first"
+            else "make the last row equal to the first, and use --closed"
         )
         yield [
-            f"the last keyframe {'repeats the first' if exact else off}, {later} s later. For a loop, use --closed, "
-            f"which {row}."
+            f"the last keyframe {'repeats the first' if exact else off}, {later} s later. For a loop, {how}."
         ]
 
 

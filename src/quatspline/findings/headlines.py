@@ -45,7 +45,7 @@ def _fair(cell: Ledger) -> tuple[Part, ...]:
     )
     try:
         return *told, " ", *naive.sentence(cell)
-    except LookupError:  # of two schemes more
+    except (FileNotFoundError, LookupError):  # of two schemes more
         return told
 
 

@@ -55,7 +55,10 @@ def returning(motion: Motion) -> Motion:
             "closed: times are not uniform, so the last row must repeat the first orientation "
             f"at the time of its return{f'; {near}' if ambiguous else ''}"
         )
-    note = f"closed: {near}; it is kept as a keyframe, and the curve returns one step later"
+    note = (
+        f"closed: {near}; it is kept as a keyframe, and the curve returns one step later "
+        "(to return at that row, make it equal to the first)"
+    )
     return _one_step_more(motion, note if ambiguous else "")
 
 

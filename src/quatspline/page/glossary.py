@@ -27,7 +27,7 @@ GLOSSARY: dict[str, Column] = {
     "angle": Column("largest angle from the truth", ANGLE, "less"),
     "inner_omega": Column("largest error of the angular velocity, inner window", RATE, "less"),
     "inner_alpha": Column("largest error of the angular acceleration, inner window", RATE2, "less"),
-    "slope": Column("order of convergence relative to the previous level", "", "more"),
+    "slope": Column("order of convergence from the previous level to this one", "", "more"),
     "regression": Column("order of convergence over the last levels", "", "more"),
     "jump": Column("largest jump at an inner keyframe", "", "less"),
     "relative": Column("largest jump as a share of the quantity's size", "", "less"),
@@ -71,7 +71,7 @@ GLOSSARY: dict[str, Column] = {
     "share_jumping": Column("share of the sets whose acceleration jumps", "", "less"),
     "jump_worst": Column("worst acceleration jump relative to the peak", "", "less"),
     "jump_median": Column("median acceleration jump relative to the peak", "", "less"),
-    "rate": Column("factor by which a late iteration reduces the change", "", "less"),
+    "rate": Column("what a late iteration leaves of the change, as a factor", "", "less"),
     "rate_theory": Column("spectral radius of the flat equations", "", "less"),
     "iterations_median": Column("median iterations", "", "less"),
     "iterations_q95": Column("95 % quantile of iterations", "", "less"),
@@ -95,7 +95,9 @@ GLOSSARY: dict[str, Column] = {
     "fairness.median": Column("median of torque energy relative to the minimum", "", "less"),
     "fairness.q95": Column("95 % quantile of torque energy relative to the minimum", "", "less"),
     "fairness.worst": Column("worst torque energy relative to the minimum", "", "less"),
-    "worst_finite": Column("worst torque energy of sets where it is finite", "", "less"),
+    "worst_finite": Column(
+        "worst torque energy relative to the minimum, of sets where it is finite", "", "less"
+    ),
     "jumping": Column("sets on which the velocity jumps or the curve leaps", "", "less"),
     "fairness.jerk_median": Column(
         "median of jerk energy relative to that of the minimum", "", "less"
@@ -187,7 +189,7 @@ GLOSSARY: dict[str, Column] = {
     "fault": Column("whose fault a departure is: the scheme's or the publication's"),
     "claims.case": Column("a line of Python that prints what was measured"),
     "frame-error.angle": Column("largest error", "rad", "less"),
-    "frame-error.order": Column("order relative to the previous level", "", "more"),
+    "frame-error.order": Column("order from the previous level to this one", "", "more"),
     "frame-error.constant": Column("error divided by h^(k+1)", "", "less"),
     "frame-error.expected": Column("the same constant for flat splines, away from ends"),
     "axis_constant": Column(

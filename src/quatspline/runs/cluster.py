@@ -27,6 +27,7 @@ LOOK = 2.0
 ALONE = 20.0
 """Seconds without any worker, or an answer, after which cells are given up: a nanny restarts one in fewer."""
 
+NO_SCHEDULER = "what answers is no scheduler"
 NO_WORKER = "the Dask cluster has no workers any more"
 GONE = "the Dask scheduler does not answer any more"
 
@@ -50,8 +51,10 @@ def connected(address: str) -> Any:
         client = distributed.Client(address, timeout=ANSWER, set_as_default=False)
     except TimeoutError:
         raise _nobody(address, f"nothing came within {GREETING:g} s") from None
-    except Exception as error:  # whatever a stranger's port says, and what distributed makes of it
+    except (OSError, ValueError) as error:
         raise _nobody(address, " ".join(str(error).split()) or type(error).__name__) from None
+    except Exception:  # whatever distributed makes of what a stranger's port says
+        raise _nobody(address, NO_SCHEDULER) from None
     try:
         client.wait_for_workers(1, timeout=JOINING)
     except TimeoutError:
@@ -76,7 +79,7 @@ async def _answer(address: str) -> None:
         try:
             await comm.write({"op": "identity", "reply": True})
             if (await comm.read()).get("type") != "Scheduler":
-                raise ValueError("what answers is no scheduler")
+                raise ValueError(NO_SCHEDULER)
         finally:
             comm.abort()
 

@@ -13,6 +13,7 @@ from typing import Any
 from quatspline import admission, catalogue
 from quatspline.engines.engine import always_compiled
 from quatspline.instruments.trials import reason
+from quatspline.runs.experiment import Run
 from quatspline.runs.staff import Done, staff
 
 
@@ -31,8 +32,10 @@ def failures(measure: Callable[..., object], names: Iterable[str], *given: Any) 
     known = admission.verdicts()
     tasks = [(i, known, measure, name, *given) for i, name in enumerate(suspects)]
     with staff() as employed:
-        done = list(employed.done(_alone, tasks, serial=False))
-    return {suspects[one.place]: why for one in done if (why := one.death or one.problem)}
+        done = employed.done(_alone, tasks, serial=False)
+        shown = Run(quick=True).progress(done, len(tasks), "plug-ins")
+        failed = {suspects[one.place]: one.death or one.problem for one in shown}
+    return {name: why for name, why in failed.items() if why}
 
 
 def _alone(
