@@ -58,7 +58,7 @@ def test_the_headline_tells_how_many_times_as_long_the_careful_one_takes():
     assert (
         "1.125 times the least torque; the paper's `quartic` has 1.50. "
         f"Naive `{NAIVE}` has 2.500 (7.5 at steps of 170 degrees); scipy's "
-        "`RotationSpline` has 1.250 (3.25) and takes 150 times as long as that per sample."
+        "`RotationSpline` has 1.250 (3.25) at 150 times the time per sample."
     ) in text
 
 

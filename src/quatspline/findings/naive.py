@@ -45,7 +45,7 @@ def sentence(cell: Ledger) -> tuple[Part, ...]:
     """Both, in plain words, beside a sentence on the least torque."""
     return said(
         f"Naive `{NAIVE}` has {{naive:.3f}} ({{large:.3g}} at steps of {{where}}); scipy's `RotationSpline` has "
-        "{careful:.3f} ({careful_large:.3g}) and takes {sample:.0f} times as long as that per sample.",
+        "{careful:.3f} ({careful_large:.3g}) at {sample:.0f} times the time per sample.",
         naive=_torque(cell, NAIVE),
         where=cell("fairness", "data", scheme=NAIVE, data=LARGE),
         large=_torque(cell, NAIVE, LARGE),
