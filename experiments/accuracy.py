@@ -94,12 +94,13 @@ def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     kinds = [kind for kind in KINDS if (table["knots"] == kind).any()]
+    lit = named.coloured(_drawn(table))
     fig, panels = style.axes(style.PAGE, 3.9, 1, len(kinds), sharey=True)
     for ax, kind in zip(panels[0], kinds, strict=True):
         own = table[(table["knots"] == kind) & table["inner_angle"].notna()]
         groups = own.sort_values("keyframes").groupby("scheme")
         rows = ((str(name), each["spacing"], each["inner_angle"]) for name, each in groups)
-        ends = named.draw_curves(ax, rows)
+        ends = named.draw_curves(ax, rows, lit)
         _guides(ax, own)
         ax.set(xscale="log", yscale="log", title=f"{kind} times", xlabel="keyframe spacing (t)")
         ax.set_xlim(EDGE * own["spacing"].max(), own["spacing"].min() / EDGE)
@@ -108,6 +109,10 @@ def draw(table: pd.DataFrame) -> Figure:
     style.letters(panels[0])
     named.name_ends(fig, {ax: ends})
     return fig
+
+
+def _drawn(table: pd.DataFrame) -> list[str]:
+    return list(table.loc[table["inner_angle"].notna(), "scheme"].unique())
 
 
 def _guides(ax: Any, table: pd.DataFrame) -> None:
@@ -129,6 +134,7 @@ def _guides(ax: Any, table: pd.DataFrame) -> None:
 def caption(table: pd.DataFrame) -> str:
     return (
         "Largest angle between each curve and the analytic motion that its keyframes come from, on the inner window "
-        "[3, 7] of [0, 10], against the mean keyframe spacing, which falls to the right; lower is better. "
-        f"{named.SAID} Dotted lines have slopes 2, 3, 4; horizontal lines are at 1, 0.1 and 0.01 degrees."
+        "[3, 7] of [0, 10], against the mean keyframe spacing, which falls to the right; lower is better."
+        f"{named.said(_drawn(table))} Dotted lines have slopes 2, 3, 4; "
+        "horizontal lines are at 1, 0.1 and 0.01 degrees."
     )

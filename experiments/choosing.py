@@ -1,6 +1,6 @@
 """One row per scheme, one column per question: derived from the other tables of the folder."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from typing import Any
 
 import numpy as np
@@ -232,9 +232,10 @@ SOURCES: dict[str, Callable[[pd.DataFrame], pd.DataFrame]] = {
 def draw(table: pd.DataFrame) -> Figure:
     fig, panels = style.axes(style.PAGE, 4.2)
     ax = panels[0, 0]
-    shown = table[np.isfinite(table["torque"]) & table["nanoseconds_per_sample"].notna()]
+    shown = _shown(table)
     shown = shown.assign(excess=(shown["torque"] - 1.0).clip(lower=LEAST_EXCESS))
-    points = [_drawn(ax, row) for _, row in shown.iterrows()]
+    lit = named.coloured(shown["scheme"])
+    points = [_drawn(ax, row, lit) for _, row in shown.iterrows()]
     ax.set(xscale="log", yscale="log", xlabel="nanoseconds per sample", xmargin=0.1)
     ax.set_ylabel("median excess of torque energy over the minimum")
     fig.draw_without_rendering()
@@ -245,21 +246,26 @@ def draw(table: pd.DataFrame) -> Figure:
     return fig
 
 
-def _drawn(ax: Any, row: pd.Series) -> direct.End | None:
+def _shown(table: pd.DataFrame) -> pd.DataFrame:
+    return table[np.isfinite(table["torque"]) & table["nanoseconds_per_sample"].notna()]
+
+
+def _drawn(ax: Any, row: pd.Series, lit: Collection[str]) -> direct.End | None:
     """Draw a scheme's point; what is written beside it, if anything is."""
     name, x, y = row["scheme"], row["nanoseconds_per_sample"], row["excess"]
-    looks = named.looks(name) | {"linestyle": "", "ms": 5}
+    looks = named.looks(name, lit) | {"linestyle": "", "ms": 5}
     if best := row["times_pareto"] == "yes":
         ax.plot(x, y, "o", ms=10, mfc="none", mec="#444444", mew=0.8)
     ax.plot(x, y, **looks)
-    if not best and name not in named.NAMED:
+    if not best and name not in lit:
         return None
-    return direct.End(x, y, called(name), looks["color"] if name in named.NAMED else "#555555")
+    return direct.End(x, y, called(name), looks["color"] if name in lit else "#555555")
 
 
 def caption(table: pd.DataFrame) -> str:
     return (
         "Torque energy over the minimum (median of the committed sets, minus 1; below 1e-4 drawn there) against the "
-        f"time of a sample; both are better when less. {named.SAID} Ringed: on the front of torque, order and the two "
+        f"time of a sample; both are better when less.{named.said(_shown(table)['scheme'])} "
+        "Ringed: on the front of torque, order and the two "
         "timings. Schemes of infinite energy are left out."
     )

@@ -8,7 +8,7 @@ from typing import Any
 import pandas as pd
 from matplotlib.figure import Figure
 
-from quatspline.catalogue import found, version
+from quatspline.catalogue import PLUG_IN, found, plug_ins, version
 from quatspline.claims import probes
 from quatspline.claims.claim import (
     DEPARTS,
@@ -31,14 +31,15 @@ TITLE = "Claims and verdicts"
 PAPER = False
 KEYS: list[str] = []
 NOTE = (
-    "source: ours (attributes of the class), peer (what the library publishes) or paper (a publication, by default "
-    "that of 2017). verdict: holds, departs, not measurable (with the reason in failure), or not decided at this "
-    "size: it holds in the cases of quick size, and full size has more. fault: whether a departure is the scheme's "
-    "fault or, if a publication claims too much, the publication's. case: a line of Python that prints the value "
-    "measured. It is the first of the cases tried, from few keyframes to more, in which a claim departs; otherwise "
-    "the one in which it holds least well. continuity holds if the measured k is at least the claimed one, order "
-    "within 0.3. Keyframes must be met to 1e-6 rad; published rates must agree with the curve's to 1e-6 (omega) or "
-    "1e-3 (alpha) of their size. Cost is counted in exponentials and logarithms; half of the printed ratio is enough."
+    "source: ours or plug-in (attributes of the class, of this package or not), peer (what the library publishes) or "
+    "paper (a publication, by default that of 2017). verdict: holds, departs, not measurable (with the reason in "
+    "failure), or not decided at this size: it holds in the cases of quick size, and full size has more. fault: "
+    "whether a departure is the scheme's fault or, if a publication claims too much, the publication's. case: a line "
+    "of Python that prints the value measured. It is the first of the cases tried, from few keyframes to more, in "
+    "which a claim departs; otherwise the one in which it holds least well. continuity holds if the measured k is at "
+    "least the claimed one, order within 0.3. Keyframes must be met to 1e-6 rad; published rates must agree with the "
+    "curve's to 1e-6 (omega) or 1e-3 (alpha) of their size. Cost is counted in exponentials and logarithms; half of "
+    "the printed ratio is enough."
 )
 MET = 1e-6
 """Largest angle (rad) at a keyframe that counts as passing through it."""
@@ -78,7 +79,8 @@ def measure_cell(run: Run, scheme: str) -> list[Row]:
         return [judged(claim) for claim in published(scheme)]
     cls = found()[scheme].scheme
     if cls is None:
-        unusable = Claim(scheme, "peer", "usable", True, unknown=found()[scheme].problem or "")
+        source: Source = "peer" if found()[scheme].shipped else PLUG_IN
+        unusable = Claim(scheme, source, "usable", True, unknown=found()[scheme].problem or "")
         return [judged(unusable)]
     claims = [*_of_class(run, cls), *published(scheme)]
     return [judged(claim) | {"version": version(scheme)} for claim in claims]
@@ -94,8 +96,9 @@ def gather(run: Run, table: pd.DataFrame) -> pd.DataFrame:
 
 def _of_class(run: Run, cls: type[Curve]) -> Iterator[Claim]:
     name = cls.name
-    publishes: Source = "ours" if cls.peer is None else "peer"
-    ours, theirs = partial(Claim, name, "ours"), partial(Claim, name, publishes)
+    own: Source = PLUG_IN if name in plug_ins() else "ours"
+    publishes: Source = own if cls.peer is None else "peer"
+    ours, theirs = partial(Claim, name, own), partial(Claim, name, publishes)
     met = partial(_meets, cls.interpolates)
     yield theirs("interpolates", cls.interpolates, _misses(cls), met, float)
     smooth = partial(operator.le, min(cls.continuity, SMOOTHEST))
@@ -111,7 +114,7 @@ def _of_class(run: Run, cls: type[Curve]) -> Iterator[Claim]:
     spins = [Probe(probes.constant_rate, name, *case) for case in _spins(cls)]
     steady = partial(_as_steady, cls.constant_rate)
     yield ours("constant rate", cls.constant_rate, spins, steady, _unsteadiness)
-    yield from _of_input(cls)
+    yield from _of_input(cls, own)
     for quantity, share in RATE.items():
         off = [Probe(probes.rate_error, name, quantity, count) for count in (3, 4)]
         right = partial(operator.ge, share)
@@ -134,8 +137,8 @@ def _as_steady(claimed: str, place: str) -> bool:
     return _unsteadiness(place) <= _unsteadiness(claimed)
 
 
-def _of_input(cls: type[Curve]) -> Iterator[Claim]:
-    ours = partial(Claim, cls.name, "ours")
+def _of_input(cls: type[Curve], own: Source) -> Iterator[Claim]:
+    ours = partial(Claim, cls.name, own)
     asked = {
         "takes uneven times": (cls.non_uniform, probes.takes_uneven_times),
         "closes": (cls.closable, probes.closes),

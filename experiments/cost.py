@@ -149,7 +149,8 @@ def _counts(task: str, name: str) -> dict[str, float]:
 
 def draw(table: pd.DataFrame) -> Figure:
     fig, panels = style.axes(style.PAGE, 3.6, 1, 2)
-    measured = table[table["seconds_median"].notna()].sort_values("size")
+    measured = _drawn(table).sort_values("size")
+    lit = named.coloured(measured["scheme"])
     ends = {}
     for ax, task, unit in zip(panels[0], SIZES, ("keyframe", "sample"), strict=False):
         groups = measured[measured["task"] == task].groupby("scheme")
@@ -157,7 +158,7 @@ def draw(table: pd.DataFrame) -> Figure:
             (str(name), each["size"], each["seconds_median"] / each["size"])
             for name, each in groups
         )
-        ends[ax] = named.draw_curves(ax, rows)
+        ends[ax] = named.draw_curves(ax, rows, lit)
         ax.set(xscale="log", yscale="log", title=task)
         ax.set(xlabel=f"{unit}s", ylabel=f"seconds per {unit}")
         ax.xaxis.set_major_locator(LogLocator(numticks=len(EVALUATION) + 2))
@@ -167,6 +168,10 @@ def draw(table: pd.DataFrame) -> Figure:
     return fig
 
 
+def _drawn(table: pd.DataFrame) -> pd.DataFrame:
+    return table[table["seconds_median"].notna() & table["task"].isin(list(SIZES)[:2])]
+
+
 def caption(table: pd.DataFrame) -> str:
     winners = table[table["times_fastest"] == 1.0].sort_values("size").groupby("task").last()
     told = [
@@ -174,6 +179,7 @@ def caption(table: pd.DataFrame) -> str:
         for task, row in winners.iterrows()
     ]
     return (
-        "Seconds per keyframe of set-up, and per sample of evaluation, by size; less is better. "
-        f"{named.SAID} Curves end where a call would be over budget. Fastest at the largest size: {'; '.join(told)}."
+        "Seconds per keyframe of set-up, and per sample of evaluation, by size; less is better."
+        f"{named.said(_drawn(table)['scheme'])} Curves end where "
+        f"a call would be over budget. Fastest at the largest size: {'; '.join(told)}."
     )

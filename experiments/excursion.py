@@ -11,7 +11,7 @@ from quatspline.catalogue import version
 from quatspline.figures import rows as scheme_rows
 from quatspline.figures import style
 from quatspline.figures.heat import ROW
-from quatspline.figures.named import NAMED, said
+from quatspline.figures.named import NAMED, coloured, said
 from quatspline.instruments.excursion import excursion
 from quatspline.instruments.trials import Row, attempted, builder
 from quatspline.quaternion import FloatArray
@@ -158,18 +158,19 @@ def _sharing(table: pd.DataFrame) -> dict[str, list[str]]:
 def _ranges(ax: Any, ends: pd.DataFrame, names: list[str]) -> None:
     """A bar from a mark at one column to the other."""
     low, high = (ends[column].reindex(names) for column in ends)
+    lit = coloured(names, COLOURED)
     for y, name in enumerate(names):
-        colour = scheme_rows.look(name, COLOURED)["color"]
+        colour = scheme_rows.look(name, lit)["color"]
         ax.plot([low[name], high[name]], [y, y], color=colour, lw=1.6, solid_capstyle="butt")
     scheme_rows.mark(ax, low, names, COLOURED)
 
 
 def caption(table: pd.DataFrame) -> str:
-    sets = int(table["sets"].max())
+    sets, sharing = int(table["sets"].max()), _sharing(table)
     return (
         f"What curves do between keyframes that slerp does not, on {sets} seeded keyframe sets of each kind. (a) Angle "
         "from the keyframe during a hold that is ten times as long as the moves beside it: median (mark) to worst "
         "(end of the bar). (b) Overshoot of steps about one axis, as a share of the step: 95 % quantile to worst. (c) "
         f"The same for generic sets. Values below {LEAST:g} are drawn there. Rows are sorted by (a), those without a "
-        f"value there last. {said(COLOURED)} {scheme_rows.said(_sharing(table))}"
+        f"value there last.{said(sharing, COLOURED)} {scheme_rows.said(sharing)}"
     )

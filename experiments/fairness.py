@@ -12,7 +12,7 @@ from quatspline.curve import Curve
 from quatspline.figures import rows as scheme_rows
 from quatspline.figures import style
 from quatspline.figures.heat import ROW, log_heat
-from quatspline.figures.named import SAID
+from quatspline.figures.named import said
 from quatspline.instruments.continuity import jumps, measured_continuity
 from quatspline.instruments.curvature import Bending, curvature_energy
 from quatspline.instruments.fairness import fairness
@@ -212,10 +212,10 @@ def _excess(ax: Any, rows: pd.DataFrame, names: list[str]) -> None:
 
 
 def caption(table: pd.DataFrame) -> str:
-    sets = int(table.loc[table["data"] == COMMITTED, "sets"].max())
+    sets, sharing = int(table.loc[table["data"] == COMMITTED, "sets"].max()), _sharing(table)
     return (
         f"(a) Excess of the torque energy over the least on {sets} committed keyframe sets: median (mark) and range "
         f"(bar). Values below {LEAST:g} are drawn there; lower is fairer. (b) Its median on sets of one step angle; "
         "grey: the scheme does not apply, or its energy is infinite. Schemes whose velocity jumps everywhere are left "
-        f"out. {SAID} {scheme_rows.said(_sharing(table))}"
+        f"out.{said(sharing)} {scheme_rows.said(sharing)}"
     )

@@ -10,7 +10,7 @@ from quatspline.catalogue import found, version
 from quatspline.figures import rows as scheme_rows
 from quatspline.figures import style
 from quatspline.figures.heat import SMALL, TIGHT
-from quatspline.figures.named import SAID
+from quatspline.figures.named import said
 from quatspline.runs.experiment import FULL, QUICK, Run
 from quatspline.timing.floors import MULTIPLY_ADD, WRITING, attainable
 from quatspline.timing.interleaved import LEAST
@@ -121,9 +121,7 @@ LINES = {WRITING: ("-", "writing"), SINCOS: (":", "sin, cos")}
 
 def draw(table: pd.DataFrame) -> Figure:
     """Nanoseconds per item, the quickest on top, the floors as lines."""
-    measured = table[table["seconds_median"].notna()]
-    order = measured[measured["task"] == PANELS[0]].sort_values("nanoseconds_per_item")["scheme"]
-    names = [name for name in order if name not in FLOORS]
+    measured, names = table[table["seconds_median"].notna()], _names(table)
     fig, panels = style.axes(style.PAGE, TIGHT * len(names) + 1.0, 1, len(PANELS), sharey=True)
     for ax, task in zip(panels[0], PANELS, strict=True):
         rows = measured[measured["task"] == task].set_index("scheme")
@@ -134,6 +132,12 @@ def draw(table: pd.DataFrame) -> Figure:
     scheme_rows.label(panels[0, 0], names, {})
     style.letters(panels[0])
     return fig
+
+
+def _names(table: pd.DataFrame) -> list[str]:
+    measured = table[table["seconds_median"].notna() & table["task"].eq(PANELS[0])]
+    order = measured.sort_values("nanoseconds_per_item")["scheme"]
+    return [name for name in order if name not in FLOORS]
 
 
 def _floors(ax: Any, nanoseconds: pd.Series) -> None:
@@ -151,5 +155,5 @@ def caption(table: pd.DataFrame) -> str:
     return (
         "Cost per sample of evaluating sorted samples of a curve through a thousand keyframes, of one sample per call, "
         "and per keyframe of its set-up, medians, sorted by the first. Grey lines are floors: writing the result "
-        f"(solid), one sine and cosine per sample (dotted). {SAID}"
+        f"(solid), one sine and cosine per sample (dotted).{said(_names(table))}"
     )

@@ -17,8 +17,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from textwrap import fill
 
-from quatspline.catalogue import found, ours
-from quatspline.curve import Curve
+from quatspline.catalogue import found, maker
 from quatspline.discovery import PACKAGE
 from quatspline.findings import targets
 from quatspline.findings.findings import findings, lines, reader
@@ -98,14 +97,9 @@ def schemes_block() -> str:
         link = DOCS / "peers.md" if s.peer else pages.get(name)
         shown = f"[`{name}`]({link.relative_to(DOCS).as_posix()})" if link else f"`{name}`"
         rows.append(
-            f"| {shown} | {s.title} | {s.continuity} | {s.order} | {support} | {_origin(name, s)} |"
+            f"| {shown} | {s.title} | {s.continuity} | {s.order} | {support} | {maker(name)} |"
         )
     return "\n".join(head + rows)
-
-
-def _origin(name: str, scheme: type[Curve]) -> str:
-    """Whose a scheme is: a library's, this project's own design, or an implementation of a publication here."""
-    return scheme.peer or ("quatspline (ours)" if ours(name) else "quatspline")
 
 
 def speed_block() -> str:

@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from quatspline.curve import Curve
 from quatspline.discovery import PROPOSED, Found, discover, named, shipped
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from quatspline.keyframes import Keyframes
 
 FOLDERS = "QUATSPLINE_BASELINES"
+PLUG_IN: Final = "plug-in"
+"""What a scheme is called that does not come with the package, where others are the package's or a library's."""
 PAPERS = "quartic"
 """The curve of the paper that this project began with: of its proposed schemes the one that is not its own."""
 
@@ -165,6 +167,14 @@ def ours(name: str) -> bool:
 def called(name: str) -> str:
     """A scheme's name where schemes are compared: this project's own are marked, since it also judges."""
     return f"{name} (ours)" if ours(name) else name
+
+
+def maker(name: str) -> str:
+    """Whose a usable scheme is, for lists: a library's, quatspline's (its own designs are marked), or a plug-in."""
+    peer = scheme(name).peer
+    if name in plug_ins():
+        return f"{PLUG_IN} ({peer})" if peer else PLUG_IN
+    return peer or f"quatspline{' (ours)' if ours(name) else ''}"
 
 
 def version(name: str) -> str | None:

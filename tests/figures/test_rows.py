@@ -78,7 +78,7 @@ def test_marks_are_hollow_for_libraries_and_grey_unless_chosen() -> None:
     assert [line.get_ydata()[0] for line in ax.lines] == [0, 1, 2, 3]
     for name, line in zip(names, ax.lines, strict=True):
         assert (line.get_markerfacecolor() == "white") == third_party(name)
-        assert (line.get_color() == rows.looks("hermite")["color"]) == (name not in NAMED)
+        assert (line.get_color() == rows.looks("hermite", ())["color"]) == (name not in NAMED)
 
 
 def test_marks_are_black_where_colours_stand_for_something_else() -> None:

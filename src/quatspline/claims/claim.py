@@ -7,7 +7,7 @@ from typing import Any, Literal, NamedTuple
 
 from quatspline.instruments.trials import Row, reason
 
-Source = Literal["ours", "peer", "paper"]
+Source = Literal["ours", "plug-in", "peer", "paper"]
 Value = int | float | str | bool
 
 HOLDS, DEPARTS, UNKNOWN = "holds", "departs", "not measurable"
@@ -41,7 +41,7 @@ class Claim(NamedTuple):
 
     Attributes
     ----------
-    scheme, source : of whom it is said, and by whom: this package, the library, a publication
+    scheme, source : of whom it is said, and by whom: this package, a plug-in, the library, a publication
     text : what is said; ``claimed``: the value that is said, as text where it is no value
     probes : from the simplest case to the hardest; none where nothing can be measured
     kept : whether a measured value agrees

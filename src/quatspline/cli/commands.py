@@ -43,7 +43,7 @@ CLAIMS: tuple[tuple[str, Callable[[Any], Any]], ...] = (
     ("uneven times", lambda s: _yes(s.non_uniform)),
     ("closes", lambda s: _yes(s.closable)),
     ("iterates", lambda s: _yes(s.iterative)),
-    ("from", lambda s: s.peer or f"quatspline{_own(s.name)}"),
+    ("from", lambda s: _maker(s.name)),
     ("title", lambda s: s.title),
 )
 
@@ -157,10 +157,10 @@ def _all_or(keyframes: int | None) -> str:
     return "all" if keyframes is None else str(keyframes)
 
 
-def _own(name: str) -> str:
-    from quatspline.catalogue import ours
+def _maker(name: str) -> str:
+    from quatspline.catalogue import maker
 
-    return " (ours)" if ours(name) else ""
+    return maker(name)
 
 
 def _yes(claim: bool) -> str:

@@ -64,6 +64,7 @@ def command(
     ValueError
         On bad keyframes, an unknown scheme, or files in the folder that are not its own.
     """
+    from quatspline.cli import ranking
     from quatspline.cli.played import played
     from quatspline.findings.recommendation import markdown
     from quatspline.page import own_scene, write_page
@@ -80,7 +81,7 @@ def command(
             results.replays("compare", played(source, table, ERRORS[0], every, name))
     table = results.table(
         "compare",
-        table,
+        ranking.sort(table, needs),
         title=comparing.TITLE,
         note=comparing.NOTE + (KEPT if every is not None else "") + comparing.told(options),
         formats=comparing.FORMATS | dict.fromkeys(ERRORS, ".3e"),
@@ -95,7 +96,7 @@ def command(
     results.record("compare", entry | {"seconds": round(time.perf_counter() - began, 3)})
     results.finish()
     places = None if motion.positions is None else motion.positions[:, 0]
-    scene = own_scene("own", "Your keyframes", keyframes, places, names)
+    scene = own_scene("own", "Your keyframes", keyframes, places, names, first=names[:1])
     page = write_page(results, title=comparing.TITLE, scenes=[scene], sections=OWN, findings=found)
     print(printable(str(page)), file=sys.stderr)
     return 0

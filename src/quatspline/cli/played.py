@@ -33,12 +33,14 @@ def played(motion: Motion, table: pd.DataFrame, by: str, every: int, title: str)
 
 
 def chosen(table: pd.DataFrame, by: str) -> list[str]:
-    """Slerp and the schemes with the least errors, libraries' last; the first two are shown first."""
+    """Slerp, plug-ins, and the schemes with the least errors, libraries' last; the first two are shown first."""
     from quatspline import catalogue
 
     whole = table[by].notna()
     if "failed_joints" in table:
         whole &= table["failed_joints"].isna()
     best = [str(name) for name in table[whole].sort_values([by, "scheme"])["scheme"]]
-    best.sort(key=lambda name: (name != REFERENCE, catalogue.scheme(name).peer is not None))
+    added = catalogue.plug_ins()
+    rest = {n: catalogue.scheme(n).peer is not None for n in best}
+    best.sort(key=lambda name: (name != REFERENCE, name not in added, rest[name]))
     return best[:SCHEMES]

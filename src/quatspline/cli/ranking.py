@@ -1,4 +1,4 @@
-"""What ``compare`` shows of its table in a terminal: the five best rows, and in one line what became of the others."""
+"""The order of ``compare``'s table; in a terminal its five best rows, and in one line what became of the others."""
 
 from __future__ import annotations
 
@@ -42,6 +42,13 @@ def ranked(frame: pd.DataFrame, needs: Needs) -> list[Row]:
     others = [*groups, ((candidates.measured,), rank)]
     rows = [*first, *(records(table.asked(*group).rows) for group in others)]
     return list({row["scheme"]: row for group in rows for row in group}.values())
+
+
+def sort(frame: pd.DataFrame, needs: Needs) -> pd.DataFrame:
+    """The rows of a table as the page and the terminal show them: as `ranked`, then schemes that were not measured."""
+    places = {row["scheme"]: place for place, row in enumerate(ranked(frame, needs))}
+    order = frame["scheme"].map(lambda name: places.get(name, len(places)))
+    return frame.loc[order.sort_values(kind="stable").index].reset_index(drop=True)
 
 
 def table(frame: pd.DataFrame, needs: Needs) -> list[str]:

@@ -1,8 +1,8 @@
 """How schemes look, in figures and on the page: a colour by family, a dash and a marker of their own.
 
 Where a family has more members than there are dashes, the next take its second tint.  No two schemes share
-tint and dash, none tint and marker.  A scheme that no family names gets its dash and marker from its name,
-in a colour of its own kind.
+tint and dash, none tint and marker.  Schemes that no family names, which are plug-ins, have a colour and
+markers that no family has.
 """
 
 from __future__ import annotations
@@ -23,7 +23,11 @@ DASHES: tuple[Dash, ...] = (
     *((0, (9.0, 3.0)), (0, (9.0, 3.0, 1.5, 3.0)), (0, (5.0, 1.5, 1.0, 1.5, 1.0, 1.5))),
 )
 MARKERS = ("o", "s", "^", "D", "v", "<", ">", "p", "h", "P", "X", "*")
-"""All can be hollow; the last three, too thin for it where they are small, are for schemes of no family alone."""
+"""All can be hollow, the last three only where they are large."""
+STRANGERS = ("P", "X", "*", "p", "h")
+"""Of them, the markers of schemes that no family names."""
+HOLLOW = ("p", "h")
+"""Of those, the markers of third-party schemes."""
 
 
 class Family(NamedTuple):
@@ -97,21 +101,22 @@ def _curated() -> dict[str, dict[str, Any]]:
 
 
 def scheme_style(name: str) -> dict[str, Any]:
-    """Colour, marker and line style of a scheme: the same in every figure and every run.
+    """Colour, marker and line style of a scheme: the same in every figure.
 
-    Markers of third-party schemes are hollow.
+    Those of a plug-in depend on the others that are found.  Markers of third-party schemes are hollow.
     """
-    look = _curated().get(name) or _drawn_by_lot(name)
+    look = _curated().get(name) or _of_no_family(name)
     return look | ({"markerfacecolor": "white"} if third_party(name) else {})
 
 
-def _drawn_by_lot(name: str) -> dict[str, Any]:
-    lot = zlib.crc32(name.encode())
-    return {
-        "color": OTHER,
-        "marker": MARKERS[lot % len(MARKERS)],
-        "linestyle": DASHES[lot // 64 % len(DASHES)],
-    }
+def _of_no_family(name: str) -> dict[str, Any]:
+    """By the scheme's place among those of no family that are equally hollow; by lot, if it is not found."""
+    hollow = third_party(name)
+    others = [n for n in found() if n not in _curated() and third_party(n) == hollow]
+    place = others.index(name) if name in others else zlib.crc32(name.encode())
+    markers = HOLLOW if hollow else STRANGERS
+    dash = DASHES[place % len(DASHES)]
+    return {"color": OTHER, "marker": markers[place % len(markers)], "linestyle": dash}
 
 
 def third_party(name: str) -> bool:

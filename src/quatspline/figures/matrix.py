@@ -10,7 +10,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from quatspline.catalogue import called
+from quatspline.catalogue import called, plug_ins
 from quatspline.figures import style
 from quatspline.figures.heat import ROW, SMALL, label_cells, scheme_rows
 from quatspline.figures.looks import third_party
@@ -27,14 +27,17 @@ Alike = Mapping[str, Sequence[str]]
 def alike(kinds: pd.DataFrame, texts: pd.DataFrame) -> dict[str, list[str]]:
     """The schemes with a row of their own, in their order, each with those whose cells are the same.
 
+    A plug-in has its own row: whoever adds one looks for it.
+
     Parameters
     ----------
     kinds, texts : one row per scheme: what colours the cells, and what is written into them
     """
     cells = pd.concat([kinds, texts], axis=1).astype(object).fillna("")
     groups: dict[tuple[str, ...], list[str]] = {}
+    added = plug_ins()
     for name, row in zip(cells.index, cells.to_numpy(), strict=True):
-        groups.setdefault(tuple(row), []).append(str(name))
+        groups.setdefault((*row, str(name) if name in added else ""), []).append(str(name))
     ranked = (sorted(names, key=_rank) for names in groups.values())
     return {first: others for first, *others in ranked}
 

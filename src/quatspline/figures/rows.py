@@ -10,7 +10,7 @@ import numpy as np
 from quatspline.catalogue import called
 from quatspline.figures.heat import scheme_rows
 from quatspline.figures.looks import FAMILIES, third_party
-from quatspline.figures.named import NAMED, looks
+from quatspline.figures.named import NAMED, coloured, looks
 from quatspline.inputs.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -82,31 +82,31 @@ def named(name: str, sharing: Shared) -> str:
 
 
 def label(
-    ax: Any, names: Sequence[str], sharing: Shared, chosen: Collection[str] | None = NAMED
+    ax: Any, names: Sequence[str], sharing: Shared, chosen: Sequence[str] | None = NAMED
 ) -> None:
     """A row per name, the first on top; black are names of schemes in colour, all where none is grey."""
+    lit = names if chosen is None else coloured(names, chosen)
     scheme_rows(ax, [named(name, sharing) for name in names])
     for text, name in zip(ax.get_yticklabels(), names, strict=True):
-        text.set_color("black" if chosen is None or name in chosen else BEHIND)
+        text.set_color("black" if name in lit else BEHIND)
 
 
-def mark(
-    ax: Any, x: pd.Series, names: Sequence[str], chosen: Collection[str] | None = NAMED
-) -> None:
+def mark(ax: Any, x: pd.Series, names: Sequence[str], chosen: Sequence[str] | None = NAMED) -> None:
     """A mark per row at numbers by name, as `look` has it."""
+    lit = None if chosen is None else coloured(names, chosen)
     for height, name in enumerate(names):
-        ax.plot(x.get(name, np.nan), height, **look(name, chosen))
+        ax.plot(x.get(name, np.nan), height, **look(name, lit))
 
 
-def look(name: str, chosen: Collection[str] | None = NAMED) -> dict[str, Any]:
+def look(name: str, lit: Collection[str] | None) -> dict[str, Any]:
     """A scheme's mark, which the edge of an axes does not cut; hollow for libraries.
 
-    Those chosen are in their colours and all others grey; all are black where none are chosen, since colours stand
-    for something else.
+    Those that are lit are in their colours and all others grey; without any (None) all are black, since colours
+    stand for something else.
     """
-    own = looks(name, chosen or ())
-    own |= {} if chosen and name in chosen else {"marker": "o"}
-    own |= {"color": "black"} if chosen is None else {}
+    own = looks(name, lit or ())
+    own |= {} if lit and name in lit else {"marker": "o"}
+    own |= {"color": "black"} if lit is None else {}
     return own | {"linestyle": "", "ms": 4.2, "clip_on": False}
 
 

@@ -8,7 +8,7 @@ from math import isclose
 import numpy as np
 import pandas as pd
 
-from quatspline.catalogue import PAPERS, called
+from quatspline.catalogue import PAPERS, called, plug_ins
 from quatspline.comparing import MET
 from quatspline.findings import candidates
 from quatspline.findings.candidates import (
@@ -107,12 +107,13 @@ def markdown(found: list[Finding]) -> str:
 
 
 def shown(frame: pd.DataFrame, needs: Needs = NOTHING) -> list[str]:
-    """The schemes that were measured: those recommended, the fairest candidate, what people know, the others."""
+    """The schemes that were measured: those recommended, the fairest candidate, plug-ins, what people know, others."""
     table = Table("compare", frame, frame, PHRASES)
     every = table.asked((measured,)).rows["scheme"].tolist()
     wanted = (smoothing(needs), take(needs), CANDIDATES)
     first = [name for which in wanted for name in table.asked(which, rank).rows["scheme"][:1]]
-    return list(dict.fromkeys([*first, *(n for n in FAMILIAR if n in every), *every]))
+    known = (name for name in (*sorted(plug_ins()), *FAMILIAR) if name in every)
+    return list(dict.fromkeys([*first, *known, *every]))
 
 
 FEW = 4

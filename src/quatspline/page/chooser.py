@@ -11,7 +11,7 @@ from typing import Any
 
 import pandas as pd
 
-from quatspline.catalogue import PAPERS, found, ours
+from quatspline.catalogue import PAPERS, PLUG_IN, found, ours
 from quatspline.discovery import Found
 from quatspline.findings.choices import CHOICES, NO, YES, Choice
 from quatspline.findings.decisions import TABLE
@@ -43,7 +43,7 @@ COLUMNS = (
     (
         "origin",
         "origin",
-        "ours, published by others and implemented here, or a library with its version",
+        "ours, published by others and implemented here, a library with its version, or a plug-in",
     ),
 )
 """Key, heading and meaning of each column."""
@@ -232,12 +232,13 @@ def failure(row: Row) -> str:
 
 
 def _origin(name: str, item: Found | None) -> tuple[str, float]:
-    """Whose a scheme is, and its place in the order: ours first."""
-    scheme = item.scheme if isinstance(item, Found) else None
-    if scheme is None:
+    """Whose a scheme is, and its place in the order: what a user added first, then ours."""
+    if not isinstance(item, Found) or item.scheme is None:
         return "not installed here", 3.0
-    if scheme.peer:
-        return f"library: {scheme.peer}", 2.0
+    if item.scheme.peer:
+        return f"library: {item.scheme.peer}", 2.0
+    if not item.shipped:
+        return PLUG_IN, -1.0
     if name == PAPERS:
         return "the paper's", 0.5
     return ("ours", 0.0) if ours(name) else ("published", 1.0)

@@ -64,7 +64,8 @@ def document(
     said: Sequence[Finding] | None = None,
 ) -> str:
     """The whole page as text: the same for the same folder."""
-    sampled = [player_data(scene) for scene in scenes]
+    measured = _schemes(folder, [])
+    sampled = [player_data(scene, measured) for scene in scenes]
     motions = [motion for motion in sampled if motion["curves"]]
     have = {kind for kind, some in (("scenes", motions), ("replays", folder.replays)) if some}
     told = findings(folder.frame) if said is None else said

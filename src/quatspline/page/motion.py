@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from quatspline.catalogue import found
+from quatspline.catalogue import found, plug_ins
 from quatspline.curve import Curve
 from quatspline.figures.meshes import Mesh, key_mesh, teapot_mesh
 from quatspline.figures.motions import VIEWS
@@ -27,6 +27,9 @@ BEFORE = 1e-7
 KEY_FACETS, TEAPOT_CELLS = 8, 5
 """Detail of the bodies, coarser than in the figures: a canvas fills some 50,000 faces a second."""
 
+PAIR = ("quartic", "nielson")
+"""What the paper compares."""
+
 OWN_SCALE = 0.25
 """The body's length as a share of the extent of positions that a user gives."""
 
@@ -43,7 +46,7 @@ class Scene:
     positions : t (m,) to positions (m, 3), in scene units
     view : elevation and azimuth of the camera, degrees
     scale : scene units to one mesh unit
-    pair : the schemes shown at first, left and right
+    pair : the schemes shown at first, left and right; for what is missing see `opening`
     schemes : the names offered; None means all of this package's own that apply
     """
 
@@ -54,7 +57,7 @@ class Scene:
     positions: Callable[[FloatArray], FloatArray]
     view: tuple[float, float] = (22.0, -62.0)
     scale: float = 1.0
-    pair: tuple[str, str] = ("quartic", "nielson")
+    pair: Sequence[str] = ()
     schemes: Sequence[str] | None = None
 
 
@@ -77,8 +80,12 @@ def own_scene(
     keyframes: Keyframes,
     positions: FloatArray | None = None,
     schemes: Sequence[str] | None = None,
+    first: Sequence[str] = (),
 ) -> Scene:
-    """A motion of one's own: a key that turns, along positions (one a time, joined by lines) if there are any."""
+    """A motion of one's own: a key that turns, along positions (one a time, joined by lines) if there are any.
+
+    Schemes ``first`` are shown at first.
+    """
     places = np.zeros((len(keyframes.times), 3)) if positions is None else positions
     extent = float(np.ptp(places, axis=0).max())
 
@@ -86,14 +93,16 @@ def own_scene(
         return np.stack([np.interp(t, keyframes.times, axis) for axis in places.T], axis=1)
 
     scale = OWN_SCALE * extent if extent > 0.0 else 1.0
-    return Scene(name, title, keyframes, key_mesh(KEY_FACETS), along, scale=scale, schemes=schemes)
+    body = key_mesh(KEY_FACETS)
+    return Scene(name, title, keyframes, body, along, scale=scale, pair=first, schemes=schemes)
 
 
-def player_data(scene: Scene) -> dict[str, Any]:
+def player_data(scene: Scene, measured: Collection[str] = ()) -> dict[str, Any]:
     """What the player needs of a scene, as JSON; arrays are base64 of little-endian 32-bit numbers.
 
     Times count from the first keyframe.  Samples hold every keyframe time, and the limit from the
-    left before it.  Schemes that do not apply are listed with the reason.
+    left before it.  Schemes that do not apply are listed with the reason.  The player opens on schemes
+    that were measured, if it is said which.
     """
     keyframes = scene.keyframes
     t = grid(keyframes)
@@ -115,10 +124,21 @@ def player_data(scene: Scene) -> dict[str, Any]:
         "positions": packed(scene.positions(times)),
         "curves": curves,
         "refused": refused,
-        "pair": list(dict.fromkeys([name for name in (*scene.pair, *curves) if name in curves]))[
-            :2
-        ],
+        "pair": opening(scene.pair, list(curves), measured),
     }
+
+
+def opening(pair: Sequence[str], there: Sequence[str], measured: Collection[str]) -> list[str]:
+    """The two schemes shown at first, of those there.
+
+    Those asked for come first; then of those that were measured a plug-in, which its author looks for, and what
+    the paper compares; then any that was measured, and any at all.
+    """
+    of_run = [name for name in there if name in measured] if measured else there
+    added = [name for name in of_run if name in plug_ins()]
+    known = [name for name in PAIR if name in of_run]
+    wanted = [name for name in pair if name in there]
+    return list(dict.fromkeys([*wanted, *added, *known, *of_run, *there]))[:2]
 
 
 def grid(keyframes: Keyframes) -> FloatArray:

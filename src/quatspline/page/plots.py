@@ -7,8 +7,9 @@ from typing import Any, Literal
 
 from matplotlib.colors import to_hex, to_rgb
 
+from quatspline.catalogue import plug_ins
 from quatspline.figures.looks import Dash, scheme_style, third_party
-from quatspline.figures.named import NAMED
+from quatspline.figures.named import NAMED, coloured
 from quatspline.page.folder import Table
 from quatspline.page.glossary import label
 
@@ -64,7 +65,7 @@ def specification(plot: Plot, table: Table) -> dict[str, Any] | None:
         "log": list(plot.log),
         "start": plot.start,
         "ratios": list(plot.ratios),
-        "lit": list(NAMED),
+        "lit": list(coloured([*NAMED, *plug_ins()])),
     }
     return {"id": f"plot-{plot.table}-{plot.kind}", "table": plot.table, **axes, **rest}
 

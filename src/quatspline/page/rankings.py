@@ -11,7 +11,8 @@ from quatspline.instruments.summary import ALL
 class Ranking:
     """How rows are ordered at first."""
 
-    column: str
+    column: str | None
+    """None where the file's order is the ranking."""
     descending: bool
     criterion: str
     among: dict[str, str] = field(default_factory=dict)
@@ -26,9 +27,11 @@ RANKINGS: dict[str, Ranking] = {
         {"data": "committed"},
     ),
     "compare": Ranking(
-        "torque_over_least",
+        None,
         False,
-        "the torque energy relative to the least of all schemes compared; less is better",
+        "what is recommended first, then what is smooth, does not wander and meets the needs, then all that meets them "
+        "and passes through the keyframes, each by torque energy; then what breaks a need, the nearest first; last "
+        "what does not pass through the keyframes or was not measured",
     ),
     "kept": Ranking(
         "rms_median",

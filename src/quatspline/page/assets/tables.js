@@ -75,10 +75,11 @@ quatspline.Table = class {
   /* -- order -- */
 
   _rank() {
-    const j = this.source.columns.indexOf(this.ranking.column);
-    if (j < 0) return;
-    this.order = { j, down: this.ranking.descending };
-    this.criterion = `Ranked by ${this.ranking.column}: ${this.ranking.criterion}.`;
+    const { column: by, descending: down, criterion } = this.ranking;
+    const j = this.source.columns.indexOf(by);
+    if (by !== null && j < 0) return;
+    if (by !== null) this.order = { j, down }; /* else the file is in this order */
+    this.criterion = `Ranked${by === null ? "" : ` by ${by}`}: ${criterion}.`;
     for (const { column, select } of this.lists) {
       const wanted = this.ranking.among[column];
       if ([...select.options].some((option) => option.value === wanted)) select.value = wanted;
