@@ -229,8 +229,8 @@ def _flaw(scheme: type[Curve]) -> str | None:
 def no_unit(curve: Curve, t: FloatArray) -> str | None:
     """What is wrong with the lengths of a curve's orientations; None where they are units."""
     lengths = np.linalg.norm(curve(t), axis=-1)
-    off = np.flatnonzero(~(np.abs(lengths - 1.0) <= UNIT))  # NaN is off, too
+    off = np.argwhere(~(np.abs(lengths - 1.0) <= UNIT))  # NaN is off, too
     if not len(off):
         return None
-    where = f"length {lengths[off[0]]:.6g} at t = {t[off[0]]:g}"
+    where = f"length {lengths[tuple(off[0])]:.6g} at t = {t[off[0, 0]]:g}"
     return f"its orientations are no unit quaternions: {where}"

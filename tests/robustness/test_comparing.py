@@ -66,7 +66,7 @@ def test_a_comparison_labels_plug_ins_that_fail_on_its_keyframes(plugins: Path) 
 def test_joints_are_compared_without_plug_ins_that_fail_on_them(
     tmp_path: Path, plugins: Path
 ) -> None:
-    bad = ["fit-exit", "fit-end", "sample-segv"]
+    bad = ["fit-exit", "fit-end", "sample-segv", "sample-nan", "sample-double"]
     given = ["--keep", 2, "--schemes", "slerp", "good", *bad, "--out", "out"]
     done = run(tmp_path, "compare", motion(tmp_path, tracks=2), *given)
     assert done.returncode == 0, done.stderr
@@ -74,7 +74,7 @@ def test_joints_are_compared_without_plug_ins_that_fail_on_them(
     table = pd.read_csv(tmp_path / "out" / "kept.csv").set_index("scheme")
     assert table.loc[["slerp", "good"], "failure"].isna().all()
     for name in bad:
-        assert table.loc[name, "failure"] == BAD[name].reason
+        assert str(BAD[name].reason) in table.loc[name, "failure"], name
 
 
 @pytest.mark.parametrize("name", ["fit-exit", "fit-interrupt", "sample-exit"])

@@ -124,13 +124,27 @@ def _measured(
     names = list(schemes or catalogue.schemes())
     count = int((~out).sum()) * len(motion.tracks)
     given = (motion, every, count, schemes is not None, dict(options))
-    failed = rehearsal.failures(_row, names, *given)
+    failed = rehearsal.failures(_alone, names, *given)
     rows = []
     for scheme in Run(quick=True).progress(names, label="compare"):
         measure = partial(_row, scheme, *given)
         row = {"failure": failed[scheme]} if scheme in failed else attempted(measure)[0]
         rows.append({"scheme": scheme} | row)
     return rows
+
+
+def _alone(scheme: str, motion: Motion, every: int, *given: Any) -> None:
+    """All that is asked of one scheme, whose orientations have to be unit quaternions."""
+    from quatspline import catalogue
+    from quatspline.admission import no_unit
+    from quatspline.options import among
+
+    _row(scheme, motion, every, *given)
+    options = among(catalogue.scheme(scheme), given[-1])
+    for piece in motion.curve(scheme, every=every, **options).pieces:
+        curve = piece.orientation
+        if flaw := no_unit(curve, curve.keyframes.inside([0.0, 0.5, 1.0])):
+            raise ValueError(flaw)
 
 
 def _row(
