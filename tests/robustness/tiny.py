@@ -20,7 +20,7 @@ from quatspline.admission import TRIED
 from quatspline.runs.store import MANIFEST
 from quatspline.system.caching import cache_base
 
-STUCK = 180.0
+STUCK = 900.0
 """Seconds after which a command counts as stuck."""
 TOKEN = "QUATSPLINE_TORTURE"
 """The variable by which a command's processes are known."""
