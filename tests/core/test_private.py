@@ -25,6 +25,9 @@ EXCEPTIONS = {
     ("report/test_choosing.py", "_convergence"): "of the experiment",
     ("report/test_choosing.py", "_edge_cases"): "of the experiment",
     ("report/test_choosing.py", "_spread"): "of the experiment",
+    ("report/test_plug_ins.py", "_of_class"): "of the experiment",
+    ("figures/test_printable.py", "_left_title"): "of matplotlib, which has no other way to it",
+    ("figures/test_printable.py", "_right_title"): "of matplotlib, which has no other way to it",
 }
 
 

@@ -160,7 +160,7 @@ def test_torques_of_no_scheme_are_an_empty_figure() -> None:
 
 def test_hollow_is_third_party_and_nothing_else() -> None:
     for name in schemes():
-        hollow = named.looks(name).get("markerfacecolor") == "white"
+        hollow = named.looks(name, [name]).get("markerfacecolor") == "white"
         assert hollow == looks.third_party(name)
 
 

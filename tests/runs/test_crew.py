@@ -8,7 +8,7 @@ from multiprocessing import connection
 import pytest
 from joblib.externals.loky.backend.process import LokyProcess
 
-from quatspline.system.crew import _serve
+from quatspline.system.crew import serve
 
 
 def test_a_process_that_begins_when_nobody_waits_any_more_says_nothing(
@@ -16,7 +16,7 @@ def test_a_process_that_begins_when_nobody_waits_any_more_says_nothing(
 ) -> None:
     """The command may be killed while a process that it started still imports."""
     ours, theirs = connection.Pipe()
-    process = LokyProcess(target=_serve, args=(theirs, os.getpid(), 1 << 40))
+    process = LokyProcess(target=serve, args=(theirs, os.getpid(), 1 << 40))
     process.start()
     ours.close()
     theirs.close()

@@ -201,6 +201,7 @@ def _compare(arguments: argparse.Namespace) -> int:
     motion = recorded.motion_of(arguments)
     needs = asked.needs(arguments, motion)
     asked.check_tracks(arguments, motion, needs)
+    recorded.tell_unread(arguments, motion)
     body = len(motion.tracks) == 1
     out = arguments.out or Path(f"{Path(arguments.keyframes).stem}-compared")
     results = Results(out, force=arguments.force)

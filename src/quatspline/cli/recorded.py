@@ -51,9 +51,13 @@ def motion_of(arguments: argparse.Namespace) -> Motion:
         prepare(motion.stamps, motion.quaternions, closed=closed, align=align)
     if motion.note:
         note(f"{path}: {motion.note}")
-    if motion.unread:
-        note(f"{path}: not read: {', '.join(map(repr, motion.unread))}")
     return motion
+
+
+def tell_unread(arguments: argparse.Namespace, motion: Motion) -> None:
+    """Name the columns or arrays that the file has besides, which a command that was refused need not say."""
+    if motion.unread:
+        note(f"{arguments.keyframes}: not read: {', '.join(map(repr, motion.unread))}")
 
 
 def _read(path: str, reading: Reading) -> Motion:
@@ -100,6 +104,7 @@ def sample(arguments: argparse.Namespace) -> None:
         samples = sampled(curve, grid(curve, arguments.rate, arguments.count))
     else:
         samples = _at(curve, arguments.at)
+    tell_unread(arguments, motion)
     if arguments.file is not None:
         _write(arguments.file, samples)
         return
@@ -133,6 +138,7 @@ def reduce(arguments: argparse.Namespace) -> None:
     motion = motion_of(arguments)
     if arguments.file is not None and not rebuilt:
         check_keyframe_suffix(arguments.file, motion)
+    tell_unread(arguments, motion)
     with naming_file(arguments.keyframes):
         wanted = arguments.scheme, arguments.error, arguments.together
         found = reduction(motion, *wanted, given, _bar)

@@ -116,7 +116,7 @@ class Crew:
     def _started(self) -> _Worker:
         ours, theirs = connection.Pipe()
         process = LokyProcess(
-            target=_serve, args=(theirs, os.getpid(), self.memory), env=self.environment
+            target=serve, args=(theirs, os.getpid(), self.memory), env=self.environment
         )
         with hang_up_ignored():
             process.start()
@@ -170,7 +170,7 @@ def _late(outcome: Outcome) -> bool:
     return outcome.death is not None and outcome.death.startswith(LATE)
 
 
-def _serve(pipe: connection.Connection, parent: int, memory: int) -> None:
+def serve(pipe: connection.Connection, parent: int, memory: int) -> None:
     """Work through what comes, in a process of a crew."""
     bind_to(parent)
     hold_memory(memory)
