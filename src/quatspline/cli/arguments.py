@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import argparse
 import ast
-import math
 import sys
 from collections.abc import Callable
 from contextlib import suppress
-from fractions import Fraction
 from pathlib import Path
 from typing import Any, Literal, NoReturn
 
 from quatspline import __version__
-from quatspline.cli import completion
+from quatspline.cli import completion, quantities
 from quatspline.system.atomic import naming
 from quatspline.system.sentence import MOST as SENTENCE
 from quatspline.system.sentence import one_line
@@ -88,10 +86,10 @@ def _add_run(commands: Any) -> None:
     run.add_argument("--out", type=Path, default=Path("results"), metavar="DIR", help=out)
     _add_force(run)
     seed = "seed of random numbers; default: %(default)s"
-    run.add_argument("--seed", type=_seed, default=0, metavar="N", help=seed)
+    run.add_argument("--seed", type=quantities.seed, default=0, metavar="N", help=seed)
     where = run.add_mutually_exclusive_group()
     jobs = "number of processes; default: one per core"
-    where.add_argument("--jobs", type=_count, metavar="N", help=jobs)
+    where.add_argument("--jobs", type=quantities.count, metavar="N", help=jobs)
     dask = "measure on the Dask cluster of this scheduler instead"
     where.add_argument("--dask", metavar="ADDRESS", help=dask)
 
@@ -120,7 +118,7 @@ def _add_compare(commands: Any) -> None:
     _add_schemes(compare)
     _add_option(compare, "of those schemes that have it")
     kept = "use every K-th frame as a keyframe, and measure at the frames left out"
-    compare.add_argument("--keep", type=_count, metavar="K", help=kept)
+    compare.add_argument("--keep", type=quantities.count, metavar="K", help=kept)
     where = (
         "folder for tables, figures and the page; default: KEYFRAMES-compared in the current folder"
     )
@@ -140,14 +138,14 @@ def _add_needs(compare: argparse.ArgumentParser) -> None:
     local = "a changed keyframe changes the curve only nearby"
     needs.add_argument("--local", action="store_true", help=local)
     causal = "a segment may wait for at most N keyframes after its own two"
-    needs.add_argument("--causal", type=_frames, metavar="N", help=causal)
+    needs.add_argument("--causal", type=quantities.frames, metavar="N", help=causal)
     for name, unit in (("rate", "degrees/s"), ("accel", "degrees/s^2")):
         told = f"the largest |{'omega' if name == 'rate' else 'alpha'}| allowed, in {unit}"
-        needs.add_argument(f"--max-{name}", type=_rate, metavar="DEG", help=told)
+        needs.add_argument(f"--max-{name}", type=quantities.rate, metavar="DEG", help=told)
     off = "how far the curve may leave the arcs between keyframes, in degrees"
-    needs.add_argument("--max-excursion", type=_least, metavar="DEG", help=off)
+    needs.add_argument("--max-excursion", type=quantities.least, metavar="DEG", help=off)
     unit = "the unit of the file's times, such as ms or '1/30 s'; default: seconds, or what the file says"
-    needs.add_argument("--time-unit", type=_unit, metavar="UNIT", help=unit)
+    needs.add_argument("--time-unit", type=quantities.unit, metavar="UNIT", help=unit)
 
 
 def _add_sample(commands: Any) -> None:
@@ -156,9 +154,12 @@ def _add_sample(commands: Any) -> None:
     known = sample.add_argument("--scheme", required=True, metavar="S", help="see quatspline list")
     _completed(known, completion.schemes)
     grid = sample.add_mutually_exclusive_group(required=True)
-    grid.add_argument("--rate", type=_rate, metavar="HZ", help="samples per second")
+    grid.add_argument("--rate", type=quantities.rate, metavar="HZ", help="samples per second")
     grid.add_argument(
-        "--count", type=_count, metavar="N", help="total number of samples, including both ends"
+        "--count",
+        type=quantities.count,
+        metavar="N",
+        help="total number of samples, including both ends",
     )
     grid.add_argument("--at", metavar="FILE", help="sample at the times of another motion file")
     _add_option(sample, "of the scheme")
@@ -178,7 +179,9 @@ def _add_reduce(commands: Any) -> None:
     )
     _add_file(reduce)
     bound = "the largest angle allowed at a frame left out, such as 0.5deg or 0.01rad"
-    reduce.add_argument("--error", type=_angle, required=True, metavar="ANGLE", help=bound)
+    reduce.add_argument(
+        "--error", type=quantities.angle, required=True, metavar="ANGLE", help=bound
+    )
     scheme = "the scheme that rebuilds the motion; default: %(default)s"
     known = reduce.add_argument("--scheme", default="slerp", metavar="S", help=scheme)
     _completed(known, completion.schemes)
@@ -229,14 +232,18 @@ def _add_file(parser: argparse.ArgumentParser, nargs: Literal["?"] | None = None
     )
     parser.add_argument("keyframes", metavar="KEYFRAMES", help=kinds, nargs=nargs)
     parser.add_argument(
-        "--skip", type=_frames, default=0, metavar="N", help="leave out the first N frames"
+        "--skip",
+        type=quantities.frames,
+        default=0,
+        metavar="N",
+        help="leave out the first N frames",
     )
     skeleton = "the skeleton of an AMC file; default: the one beside it"
     parser.add_argument("--skeleton", metavar="ASF", help=skeleton)
     rate = "the frame rate of files that do not give one (KITTI, AMC), or to override that of a BVH"
-    parser.add_argument("--frame-rate", type=_rate, metavar="HZ", help=rate)
+    parser.add_argument("--frame-rate", type=quantities.rate, metavar="HZ", help=rate)
     gap = "split the motion where frames are further apart than this (s); every piece gets its own curve"
-    parser.add_argument("--max-gap", type=_rate, metavar="S", help=gap)
+    parser.add_argument("--max-gap", type=quantities.rate, metavar="S", help=gap)
 
 
 def _add_schemes(parser: argparse.ArgumentParser) -> None:
@@ -261,53 +268,3 @@ def _add_force(parser: argparse.ArgumentParser) -> None:
 def _completed(argument: argparse.Action, completer: Callable[..., list[str]]) -> None:
     """Have shells complete an argument so: argcomplete looks for an attribute of this name."""
     vars(argument)["completer"] = completer
-
-
-def _number(kind: type, accepts: Callable[[Any], bool], wanted: str) -> Callable[[str], Any]:
-    def parsed(text: str) -> Any:
-        with suppress(ValueError):
-            if text.isascii() and "_" not in text and accepts(value := kind(text)):
-                return value
-        raise argparse.ArgumentTypeError(f"{text!r}: expected {wanted}")
-
-    return parsed
-
-
-def _angle(text: str) -> float:
-    """An angle in rad of a number with its unit."""
-    number = text.strip().lower().removesuffix("°")
-    unit = "deg" if number != text.strip().lower() else number[-3:]
-    number = number.removesuffix(unit)
-    with suppress(ValueError):
-        value = float(number) * {"deg": math.pi / 180.0, "rad": 1.0}.get(unit, math.nan)
-        if 0.0 < value < math.inf:
-            return value
-    raise argparse.ArgumentTypeError(
-        f"{text!r}: expected a positive angle with its unit, such as 0.5deg"
-    )
-
-
-SECONDS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0}
-
-
-def _unit(text: str) -> float:
-    """Seconds of a unit of time, of several or of a fraction of one."""
-    number, _, name = text.strip().rpartition(" ")
-    with suppress(ValueError, ZeroDivisionError):
-        seconds = float(Fraction(number or 1)) * SECONDS.get(name, math.nan)
-        if 0.0 < seconds < math.inf:
-            return seconds
-    units = ", ".join(SECONDS)
-    raise argparse.ArgumentTypeError(
-        f"{text!r}: expected one of {units}, or a multiple such as '1/30 s'"
-    )
-
-
-_rate = _number(float, lambda value: 0.0 < value < math.inf, "a positive number")
-_least = _number(float, lambda value: 0.0 <= value < math.inf, "a number, at least 0")
-MOST = 2**63 - 1
-"""The largest count accepted: a larger number is a slip of the keyboard and fits no array."""
-
-_count = _number(int, lambda value: 1 <= value <= MOST, "a whole number, at least 1")
-_frames = _number(int, lambda value: 0 <= value <= MOST, "a whole number, at least 0")
-_seed = _number(int, lambda value: value >= 0, "a whole number, at least 0")
